@@ -1,0 +1,99 @@
+#ifndef impm_history_h
+#define impm_history_h
+
+#include <impm/momentum_balance.h>
+#include <impm/point_fields.h>
+
+#include <fstream>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace impm
+{
+  /** What happened in one step, apart from what points and grid tell. */
+  struct StepReport
+  {
+    unsigned int step              = 0;
+    double       time              = 0; ///< at the end of the step (s)
+    double       dt                = 0;
+    unsigned int newton_iterations = 0, linear_iterations = 0,
+                 line_searches = 0, step_cuts = 0, projections = 0,
+                 solver_fallbacks = 0, noise_stops = 0;
+    double residual      = 0;
+    double external_work = 0; ///< since the start (J)
+    double wall_seconds  = 0; ///< since the start
+  };
+
+  /** Sums over all points. */
+  template <int dim>
+  struct Totals
+  {
+    double                 mass = 0;
+    dealii::Tensor<1, dim> momentum;
+    double kinetic_energy = 0, strain_energy = 0, plastic_work = 0;
+  };
+
+  /** Collective. */
+  template <int dim>
+  Totals<dim>
+  total(const MaterialPoints<dim> &points);
+
+  /** history.csv: a header line, then a row a step, each on disk at once. */
+  template <int dim>
+  class History
+  {
+  public:
+    /**
+     * Finds the points that probes follow. Throws InputError for a probe that
+     * asks for what this scene does not have. Writes nothing. Collective.
+     */
+    History(const Scene<dim>           &scene,
+            const MaterialPoints<dim>  &points,
+            const RigidBodies<dim>     &rigid,
+            const MomentumBalance<dim> &balance);
+
+    /** Starts the file. */
+    void
+    open(const std::string &directory);
+
+    /**
+     * The figures of reactions, which must be taken while the balance stands
+     * at the end of the step, before points and grid move on. Collective.
+     */
+    void
+    take_reactions();
+
+    /** Adds a row, after the points have moved. Collective. */
+    void
+    write(const StepReport &report);
+
+    const std::vector<std::pair<std::string, double>> &
+    last_figures() const
+    {
+      return figures;
+    }
+
+  private:
+    double
+    probe(unsigned int index, double time) const;
+
+    struct Follower
+    {
+      std::optional<PointField<dim>> field;
+      double                         id = -1; ///< of the point, if it is one
+    };
+
+    const Scene<dim>                           &scene;
+    const MaterialPoints<dim>                  &points;
+    const RigidBodies<dim>                     &rigid;
+    const MomentumBalance<dim>                 &balance;
+    std::vector<Follower>                       followers; ///< by probe
+    std::vector<double>                         reactions;
+    std::array<double, 2 * dim>                 face_start;
+    std::vector<std::pair<std::string, double>> figures;
+    std::ofstream                               file;
+  };
+} // namespace impm
+
+#endif

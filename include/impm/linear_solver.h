@@ -1,0 +1,70 @@
+#ifndef impm_linear_solver_h
+#define impm_linear_solver_h
+
+#include <deal.II/base/timer.h>
+
+#include <deal.II/lac/trilinos_precondition.h>
+#include <deal.II/lac/trilinos_sparse_matrix.h>
+
+#include <impm/momentum_balance.h>
+
+namespace impm
+{
+  /**
+   * Solves the linear systems of Newton's method: CG or GMRES of deal.II with
+   * AMG, Jacobi or no preconditioner, or a direct solver, which also takes
+   * over, counted, where an iterative one fails.
+   */
+  template <int dim>
+  class LinearSolver
+  {
+  public:
+    LinearSolver(const SolverSpec           &spec,
+                 const MomentumBalance<dim> &balance,
+                 dealii::TimerOutput        &timer);
+
+    /** Prepares for the sparsity of a new step. Collective. */
+    void
+    begin_step();
+
+    /**
+     * Solves with the tangent as it is now, to the residual `tolerance` times
+     * that of zero (a direct solver to round-off). Returns the number of
+     * iterations. Throws ComputationError when even the direct solver fails.
+     * Collective.
+     */
+    unsigned int
+    solve(Vector &x, const Vector &b, double tolerance);
+
+    unsigned int n_fallbacks = 0; ///< to the direct solver, all steps
+
+  private:
+    void
+    update_preconditioner();
+
+    unsigned int
+    iterate(Vector &x, const Vector &b, double tolerance);
+
+    void
+    solve_directly(Vector &x, const Vector &b);
+
+    bool
+    needs_matrix() const
+    {
+      return spec.linear_solver == "direct" || !spec.matrix_free ||
+             spec.preconditioner == "AMG";
+    }
+
+    const SolverSpec           &spec;
+    const MomentumBalance<dim> &balance;
+    dealii::TimerOutput        &timer;
+
+    bool                                      matrix_is_current = false;
+    dealii::TrilinosWrappers::SparseMatrix    matrix;
+    dealii::TrilinosWrappers::PreconditionAMG amg;
+    std::vector<double>                       rigid_body_modes;
+    Vector                                    inverse_diagonal;
+  };
+} // namespace impm
+
+#endif

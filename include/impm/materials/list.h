@@ -1,0 +1,36 @@
+#ifndef impm_materials_list_h
+#define impm_materials_list_h
+
+#include <deal.II/base/parameter_handler.h>
+
+#include <impm/materials/material.h>
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace impm
+{
+  /** A law that a scene can name. */
+  struct MaterialEntry
+  {
+    std::string name; ///< as in `set Law = ...`
+    std::string documentation;
+
+    /** Declares the entries of this law, and no others. */
+    std::function<void(dealii::ParameterHandler &)> declare;
+
+    /**
+     * Reads them back. Throws InputError, with the entry's bare name, when
+     * they contradict each other.
+     */
+    std::function<std::unique_ptr<Material>(dealii::ParameterHandler &)> create;
+  };
+
+  /** Every law of the program; a new one is added here. */
+  const std::vector<MaterialEntry> &
+  material_list();
+} // namespace impm
+
+#endif

@@ -1,0 +1,90 @@
+#ifndef impm_materials_log_strain_von_mises_h
+#define impm_materials_log_strain_von_mises_h
+
+#include <deal.II/base/parameter_handler.h>
+
+#include <impm/materials/log_strain_elastic.h>
+#include <impm/materials/material.h>
+
+#include <array>
+#include <memory>
+#include <optional>
+
+namespace impm
+{
+  /**
+   * Multiplicative von Mises plasticity: Hencky's elasticity below the yield
+   * limit
+   *
+   *   q = sqrt(3/2) |dev tau| <= sigma_y + H alpha
+   *
+   * with associated, isochoric flow and alpha the equivalent plastic strain.
+   * In principal logarithmic strains the exponential map makes the return
+   * mapping that of small strains (Simo 1992, see log_strain.h), closed form
+   * with linear hardening. A step minimizes over alpha the potential
+   *
+   *   W = psi(eps_e) + sigma_y alpha + H / 2 alpha^2,
+   *
+   * whose derivative by the trial strains is tau, so that D is symmetric.
+   *
+   * History: "elastic_left_cauchy_green" b_e (-) and
+   * "equivalent_plastic_strain" alpha (-).
+   */
+  class LogStrainVonMises final : public Material
+  {
+  public:
+    /**
+     * Yield stress sigma_y (Pa, > 0) and slope H >= 0 (Pa) of the yield
+     * stress over the equivalent plastic strain.
+     */
+    LogStrainVonMises(const HenckyElasticity &elasticity,
+                      double                  density,
+                      double                  yield_stress,
+                      double                  hardening);
+
+    static void
+    declare_parameters(dealii::ParameterHandler &prm);
+
+    static std::unique_ptr<Material>
+    create(dealii::ParameterHandler &prm);
+
+    void
+    declare_history(PointLayout &layout) override;
+
+    void
+    initialize_history(double *history) const override;
+
+    bool
+    evaluate(const Deformation &deformation,
+             const double      *history,
+             double            *trial_history,
+             bool               with_tangent,
+             Response          &response) const override;
+
+    Energy
+    energy(const dealii::Tensor<2, 3> &deformation_gradient,
+           const double               *history) const override;
+
+    double
+    stiffness() const override;
+
+    double
+    wave_speed() const override;
+
+  private:
+    /** Plastic work sigma_y alpha + H / 2 alpha^2 (J/m^3). */
+    double
+    plastic_work(double equivalent_plastic_strain) const;
+
+    const HenckyElasticity elasticity;
+    const double           yield_stress;
+    const double           hardening;
+
+    // where declare_history() has put the fields, and how they are stored
+    std::optional<PointLayout> layout;
+    unsigned int               elastic_offset = 0;
+    unsigned int               plastic_offset = 0;
+  };
+} // namespace impm
+
+#endif

@@ -1,0 +1,196 @@
+#ifndef impm_momentum_balance_h
+#define impm_momentum_balance_h
+
+#include <deal.II/lac/full_matrix.h>
+#include <deal.II/lac/trilinos_sparse_matrix.h>
+
+#include <impm/footprints.h>
+#include <impm/ghost_penalty.h>
+#include <impm/step_constraints.h>
+#include <impm/time_integrator.h>
+
+#include <functional>
+
+namespace impm
+{
+  /**
+   * The balance of momentum on the grid over one step: residual, potential,
+   * exact tangent as an operator, its diagonal and its matrix.
+   *
+   * Unknown is the grid's displacement increment u. At a point,
+   * dF = I + sum_I u_I (x) grad N_I, F = dF F_n, and the internal force is
+   * f_I = sum_p V0_p P_p grad N_I with P = tau dF^-T, gradients at t_n. The
+   * tangent at a point is A = dP/d(dF), that is the spatial tangent of the
+   * Newmark note carried back by dF^-1. A gradient of u has dim * dim values
+   * (d u_i / d x_j at [i dim + j]) and, when axisymmetric, u_r / r behind.
+   */
+  template <int dim>
+  class MomentumBalance
+  {
+  public:
+    MomentumBalance(const Scene<dim>          &scene,
+                    const BackgroundGrid<dim> &grid,
+                    const MaterialPoints<dim> &points,
+                    const RigidBodies<dim>    &rigid,
+                    const TimeIntegrator      &integrator);
+
+    /**
+     * Takes points and grid as they are now for the step from `time` to
+     * `time + dt`. Collective.
+     */
+    void
+    begin_step(double time, double dt);
+
+    /** The state of the points and forces at an increment. */
+    struct Evaluation
+    {
+      bool   admissible = false; ///< J > 0 and a finite stress everywhere
+      double potential  = 0;     ///< (J)
+      double residual   = 0;     ///< scaled, see begin_step
+      double round_off  = 0;     ///< below this `residual` is noise
+    };
+
+    /**
+     * Evaluates forces and, unless told not to, the tangent at `u`, which
+     * satisfies the constraints. Collective.
+     */
+    Evaluation
+    evaluate(const Vector &u, bool with_tangent = true);
+
+    /**
+     * Replaces the tangent at every point by its positive part, so that the
+     * next Newton step descends. Needs a symmetric tangent.
+     */
+    void
+    project_tangent();
+
+    /** Minus the gradient of the potential; zero where constrained. */
+    const Vector &
+    residual() const
+    {
+      return free_residual;
+    }
+
+    /** What faces and rigid bodies exert (N): the residual before they do. */
+    const Vector &
+    constraint_forces() const
+    {
+      return forces;
+    }
+
+    /**
+     * dst = C^T K C src, identity on constrained values; C sets hanging nodes
+     * and zeros. Collective.
+     */
+    void
+    vmult(Vector &dst, const Vector &src) const;
+
+    /** K src with prescribed values in src, zero where constrained. */
+    void
+    vmult_lift(Vector &dst, const Vector &src) const;
+
+    /**
+     * The diagonal of vmult. At masters of hanging nodes the terms that couple
+     * a hanging node to its master are left out. Collective.
+     */
+    void
+    diagonal(Vector &diagonal) const;
+
+    /** Gives the matrix the sparsity of this step. Collective. */
+    void
+    initialize_matrix(dealii::TrilinosWrappers::SparseMatrix &matrix) const;
+
+    /** Fills it with the tangent. Collective. */
+    void
+    assemble(dealii::TrilinosWrappers::SparseMatrix &matrix) const;
+
+    /** External force (N), with the sign of an internal one, by local index. */
+    double
+    load_at(const unsigned int index) const
+    {
+      return load.local_element(index);
+    }
+
+    /** Whether a rotation of the body is free of energy. */
+    bool
+    has_rotations() const
+    {
+      return !axisymmetric;
+    }
+
+    const Footprints<dim> &
+    footprints() const
+    {
+      return prints;
+    }
+
+    /** dF - I at a point as of the last evaluation. */
+    dealii::Tensor<2, 3>
+    increment_gradient(unsigned int point) const;
+
+    const double *
+    trial_history(const unsigned int point) const
+    {
+      return &histories[point * points.history_size()];
+    }
+
+    const BackgroundGrid<dim> &grid;
+    StepConstraints<dim>       constraints;
+
+    Vector                mass;          ///< lumped (kg), ready at begin_step
+    Vector                velocity;      ///< at the start (m/s), if inertia
+    unsigned int          n_active_dofs; ///< neither constrained nor unused
+    unsigned long         n_stress_evaluations = 0; ///< of this rank, all steps
+    mutable unsigned long n_operator_applications = 0;
+
+  private:
+    void
+    gather_inertia();
+
+    /** Gradients of a vector at all points; its ghosts are up to date. */
+    void
+    gradients_at_points(const Vector &u, std::vector<double> &gradients) const;
+
+    /** force += sum_p B^T stress; ghosts of force not summed. */
+    void
+    add_point_forces(const std::vector<double> &stress, Vector &force) const;
+
+    bool
+    evaluate_materials(bool with_tangent, double &potential);
+
+    void
+    gather_load();
+
+    void
+    apply_tangent(Vector &dst, const Vector &src) const;
+
+    void
+    cell_matrix(const typename Footprints<dim>::Cell &cell,
+                dealii::FullMatrix<double>           &matrix) const;
+
+    const Scene<dim>          &scene;
+    const MaterialPoints<dim> &points;
+    const TimeIntegrator      &integrator;
+
+    const bool         axisymmetric;
+    const unsigned int n_gradients; ///< values of a gradient
+    double             time, dt;
+
+    Footprints<dim>   prints;
+    GhostPenalty<dim> ghost;
+    Vector            known_acceleration; ///< (m/s^2)
+    Vector            load;               ///< minus the external forces (N)
+    Vector            start_forces; ///< f(0) (N), if the integrator weighs it
+    double force_scale;     ///< norm of the forces at a strain of one (N)
+    double smallest_extent; ///< of a cell (m)
+
+    // By point, in units of N m: the volume is in them.
+    std::vector<double> gradients, stresses, tangents, histories;
+
+    mutable std::vector<double> gradient_increments, stress_increments;
+    mutable Vector              work;
+    Vector                      forces, free_residual;
+  };
+} // namespace impm
+
+#endif

@@ -1,0 +1,177 @@
+#ifndef impm_scene_h
+#define impm_scene_h
+
+#include <deal.II/base/function_parser.h>
+#include <deal.II/base/point.h>
+
+#include <impm/materials/material.h>
+#include <impm/parameter_file.h>
+#include <impm/point_layout.h>
+#include <impm/shapes.h>
+
+#include <array>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace impm
+{
+  /** The background grid at the start: a box of equal cells. */
+  template <int dim>
+  struct GridSpec
+  {
+    dealii::Point<dim>            lower_corner, upper_corner;
+    std::array<unsigned int, dim> cells;
+
+    /** Cells whose centre makes `refine_where` positive are split so often. */
+    unsigned int                                 refinement_levels = 0;
+    std::shared_ptr<dealii::FunctionParser<dim>> refine_where;
+  };
+
+  template <int dim>
+  struct BodySpec
+  {
+    std::string name;
+    bool        rigid = false;
+
+    /** Points come from a shape, or from a file. */
+    std::shared_ptr<const Shape<dim>> shape;
+    std::string                       point_file;
+    unsigned int                      points_per_cell = 2; ///< per direction
+
+    std::shared_ptr<Material>                    material; ///< if deformable
+    std::shared_ptr<dealii::FunctionParser<dim>> velocity; ///< at the start
+
+    /** Of a rigid body: displacement since t = 0 as a function of time. */
+    std::shared_ptr<dealii::FunctionParser<1>> displacement;
+    /** Direction in which alone a rigid body holds its nodes; dim: in all. */
+    unsigned int slip_normal = dim;
+  };
+
+  /** What holds on one face of the domain. */
+  template <int dim>
+  struct FaceSpec
+  {
+    std::string           name;
+    std::array<bool, dim> constrained{}; ///< which components are prescribed
+    bool                  moves_grid  = false;
+    bool                  is_velocity = false;
+    /** Prescribed displacement or velocity in (x, t); null means zero. */
+    std::shared_ptr<dealii::FunctionParser<dim>> value;
+  };
+
+  /** A figure of the points in a column of the history. */
+  struct ProbeSpec
+  {
+    enum class Kind
+    {
+      point,   ///< a field at the point nearest to a place at the start
+      largest, ///< over all points of the bodies
+      smallest,
+      mean,   ///< weighted by initial volume
+      extent, ///< largest coordinate, the points' domains included
+      motion  ///< displacement of a moving face or rigid body
+    };
+    std::string              name;
+    Kind                     kind;
+    std::string              field;
+    unsigned int             component = 0;
+    double                   factor    = 1;
+    std::vector<double>      position;
+    std::vector<std::string> bodies; ///< empty: all
+    std::string              of;     ///< motion: face or rigid body
+  };
+
+  /** Force of the material on a face or a rigid body, along a direction. */
+  struct ReactionSpec
+  {
+    std::string         name;
+    std::string         on;
+    std::vector<double> direction;
+    double              factor = 1;
+  };
+
+  struct TimeSpec
+  {
+    std::string  integrator;
+    double       theta = 1;
+    double       end, step, growth, largest_step, smallest_step;
+    unsigned int largest_number_of_steps;
+  };
+
+  struct SolverSpec
+  {
+    double       newton_tolerance;
+    unsigned int newton_iterations;
+    bool         line_search;
+    std::string  linear_solver; ///< CG, GMRES, direct
+    double       linear_tolerance  = 0;
+    unsigned int linear_iterations = 0;
+    unsigned int gmres_directions  = 0;
+    std::string  preconditioner    = "none"; ///< AMG, Jacobi, none
+    bool         matrix_free       = false;
+  };
+
+  struct StabilizationSpec
+  {
+    double ghost_penalty;      ///< in units of Young's modulus; 0: off
+    double isolated_stiffness; ///< in units of Young's modulus; 0: off
+  };
+
+  struct OutputSpec
+  {
+    std::string              directory;
+    bool                     pictures;
+    double                   picture_interval; ///< 0: every picture_steps steps
+    unsigned int             picture_steps;
+    std::vector<std::string> point_fields;
+    std::vector<ProbeSpec>   probes;
+    std::vector<ReactionSpec> reactions;
+  };
+
+  /** Everything that a parameter file says, checked and ready to use. */
+  template <int dim>
+  struct Scene
+  {
+    std::string                                  title;
+    std::map<std::string, double>                constants;
+    GeometryKind                                 geometry;
+    GridSpec<dim>                                grid;
+    std::vector<BodySpec<dim>>                   bodies;
+    std::array<FaceSpec<dim>, 2 * dim>           faces;
+    std::shared_ptr<dealii::FunctionParser<dim>> body_force; ///< N/kg, or null
+    TimeSpec                                     time;
+    SolverSpec                                   solver;
+    StabilizationSpec                            stabilization;
+    OutputSpec                                   output;
+
+    /** Without inertia there is no velocity. */
+    bool
+    has_inertia() const
+    {
+      return time.integrator != "quasi-static";
+    }
+  };
+
+  /** Names of the faces in deal.II's order: left right bottom top back front.
+   */
+  const std::vector<std::string> &
+  face_names();
+
+  /** Declares every entry that the choices so far can use. */
+  void
+  declare_scene(dealii::ParameterHandler    &prm,
+                const ParameterFile::Chosen &chosen);
+
+  /** 2 or 3, from the chosen geometry. */
+  int
+  scene_dimension(dealii::ParameterHandler &prm);
+
+  /** Reads the scene and checks what no single entry can tell. */
+  template <int dim>
+  Scene<dim>
+  read_scene(dealii::ParameterHandler &prm);
+} // namespace impm
+
+#endif

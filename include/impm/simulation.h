@@ -1,0 +1,102 @@
+#ifndef impm_simulation_h
+#define impm_simulation_h
+
+#include <deal.II/base/conditional_ostream.h>
+#include <deal.II/base/timer.h>
+
+#include <impm/command_line.h>
+#include <impm/console.h>
+#include <impm/history.h>
+#include <impm/newton_solver.h>
+#include <impm/pictures.h>
+
+namespace impm
+{
+  /**
+   * One run of a scene: the loop over time steps and what it writes. Data
+   * flows one way through a step: points -> footprints -> Newton on the grid
+   * -> points -> next grid.
+   */
+  template <int dim>
+  class Simulation
+  {
+  public:
+    /**
+     * Builds grid and bodies. Throws InputError when they do not fit; writes
+     * nothing. Collective.
+     */
+    Simulation(const Scene<dim>      &scene,
+               CommandLine::Verbosity verbosity,
+               MPI_Comm               communicator);
+
+    /** Prints what the points carry and how many there are. Collective. */
+    void
+    describe();
+
+    /**
+     * Runs to the end and writes into a directory, with the resolved
+     * parameters. Throws ComputationError after it has saved the last good
+     * state. Collective.
+     */
+    void
+    run(const std::string &directory,
+        const std::string &scene_name,
+        const std::string &parameters);
+
+  private:
+    void
+    advance();
+
+    typename NewtonSolver<dim>::Result
+    attempt(double dt);
+
+    void
+    commit();
+
+    bool
+    moves_too_far() const;
+
+    double
+    external_work_of_step() const;
+
+    void
+    picture(bool grid_has_increment);
+
+    void
+    save_last_good_state(const std::string &reason);
+
+    void
+    write_summary(const std::string &scene_name, const std::string &status);
+
+    double
+    grid_motion(unsigned int face) const;
+
+    const Scene<dim>                     &scene;
+    const MPI_Comm                        communicator;
+    dealii::ConditionalOStream            silence;
+    dealii::TimerOutput                   timer;
+    BackgroundGrid<dim>                   grid;
+    MaterialPoints<dim>                   points;
+    RigidBodies<dim>                      rigid;
+    const std::unique_ptr<TimeIntegrator> integrator;
+    MomentumBalance<dim>                  balance;
+    LinearSolver<dim>                     linear_solver;
+    NewtonSolver<dim>                     newton;
+    Pictures<dim>                         pictures;
+    History<dim>                          history;
+    Console                               console;
+    Vector                                u, velocity_change;
+
+    dealii::Timer wall;
+    std::string   directory;
+    double        time = 0, step_size, next_picture = 0;
+    StepReport    report;
+    struct
+    {
+      unsigned long newton = 0, linear = 0, line_searches = 0, cuts = 0,
+                    projections = 0, noise_stops = 0;
+    } sums;
+  };
+} // namespace impm
+
+#endif

@@ -1,0 +1,54 @@
+#ifndef impm_time_integrator_h
+#define impm_time_integrator_h
+
+#include <impm/background_grid.h>
+#include <impm/scene.h>
+
+#include <memory>
+
+namespace impm
+{
+  /**
+   * What one step makes of inertia: in the balance
+   *
+   *   m (mass_factor u - known) + force_factor f(u)
+   *     + (1 - force_factor) f(0) = 0,
+   *
+   * u is the grid's increment, f internal minus external forces, `known` comes
+   * from the velocity at the start.
+   */
+  class TimeIntegrator
+  {
+  public:
+    virtual ~TimeIntegrator() = default;
+
+    virtual bool
+    has_inertia() const = 0;
+
+    /** (1/s^2) */
+    virtual double
+    mass_factor(double dt) const = 0;
+
+    virtual double
+    force_factor() const = 0;
+
+    /** The known part of the acceleration (m/s^2) from the velocity (m/s). */
+    virtual void
+    known_acceleration(double        dt,
+                       const Vector &velocity,
+                       Vector       &known) const = 0;
+
+    /** Velocity at the end of the step (m/s). */
+    virtual void
+    end_velocity(double        dt,
+                 const Vector &u,
+                 const Vector &start_velocity,
+                 Vector       &velocity) const = 0;
+  };
+
+  /** The integrator that a scene names: every one stands in here. */
+  std::unique_ptr<TimeIntegrator>
+  make_time_integrator(const TimeSpec &spec);
+} // namespace impm
+
+#endif

@@ -1,0 +1,35 @@
+#ifndef impm_transfer_h
+#define impm_transfer_h
+
+#include <impm/momentum_balance.h>
+
+namespace impm
+{
+  /**
+   * From grid to points at the end of a step that has converged at `u`:
+   * positions, deformation, history and, with inertia, velocity, which takes
+   * the change of the grid's (FLIP: Sulsky & Kaul 2004, eq. 2.3.2 and 2.3.3).
+   * Hanging nodes of all vectors are set. The points are not sorted.
+   */
+  template <int dim>
+  void
+  advance_points(const MomentumBalance<dim> &balance,
+                 const Vector               &u,
+                 const Vector               &velocity_change,
+                 MaterialPoints<dim>        &points);
+
+  /**
+   * Largest motion of any point over the step, relative to a grid that
+   * `grid_motion` moves, in extents of its cell. Collective.
+   */
+  template <int dim>
+  double
+  largest_motion(
+    const MomentumBalance<dim> &balance,
+    const Vector               &u,
+    const MaterialPoints<dim>  &points,
+    const std::function<dealii::Tensor<1, dim>(const dealii::Point<dim> &)>
+      &grid_motion);
+} // namespace impm
+
+#endif

@@ -1,0 +1,148 @@
+#include <deal.II/dofs/dof_tools.h>
+
+#include <deal.II/fe/fe_q.h>
+
+#include <deal.II/grid/grid_generator.h>
+#include <deal.II/grid/grid_tools.h>
+
+#include <impm/background_grid.h>
+
+namespace impm
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** How often all the numbers can be halved. */
+    template <std::size_t n>
+    unsigned int
+    common_halvings(std::array<unsigned int, n> numbers)
+    {
+      unsigned int halvings = 0;
+      while (std::all_of(numbers.begin(), numbers.end(), [](unsigned int k) {
+        return k % 2 == 0;
+      }))
+        {
+          for (auto &k : numbers)
+            k /= 2;
+          ++halvings;
+        }
+      return halvings;
+    }
+  } // namespace
+
+  template <int dim>
+  BackgroundGrid<dim>::BackgroundGrid(const GridSpec<dim> &spec,
+                                      const MPI_Comm       communicator)
+    : communicator(communicator)
+    , triangulation(communicator)
+    , fe(FE_Q<dim>(1), dim)
+    , dof_handler(triangulation)
+    , lower_corner(spec.lower_corner)
+    , upper_corner(spec.upper_corner)
+  {
+    // Every rank keeps all coarse cells: as few of them as give the cells
+    // that were asked for.
+    const unsigned int        levels = common_halvings(spec.cells);
+    std::vector<unsigned int> coarse_cells;
+    for (const auto n : spec.cells)
+      coarse_cells.push_back(n >> levels);
+    GridGenerator::subdivided_hyper_rectangle(
+      triangulation, coarse_cells, lower_corner, upper_corner, true);
+    triangulation.refine_global(levels);
+
+    for (unsigned int level = 0; level < spec.refinement_levels; ++level)
+      {
+        for (const auto &cell : triangulation.active_cell_iterators())
+          if (cell->is_locally_owned() &&
+              cell->level() == static_cast<int>(levels + level) &&
+              spec.refine_where->value(cell->center()) > 0)
+            cell->set_refine_flag();
+        triangulation.execute_coarsening_and_refinement();
+      }
+    distribute_dofs();
+  }
+
+  template <int dim>
+  void
+  BackgroundGrid<dim>::distribute_dofs()
+  {
+    dof_handler.distribute_dofs(fe);
+    DoFTools::extract_locally_relevant_dofs(dof_handler, locally_relevant_dofs);
+    partitioner = std::make_shared<Utilities::MPI::Partitioner>(
+      dof_handler.locally_owned_dofs(), locally_relevant_dofs, communicator);
+    hanging_nodes.clear();
+    hanging_nodes.reinit(locally_relevant_dofs);
+    DoFTools::make_hanging_node_constraints(dof_handler, hanging_nodes);
+    hanging_nodes.close();
+    locate_nodes();
+  }
+
+  template <int dim>
+  void
+  BackgroundGrid<dim>::locate_nodes()
+  {
+    positions.resize(
+      (partitioner->locally_owned_size() + partitioner->n_ghost_indices()) /
+      dim);
+    for (const auto &cell : dof_handler.active_cell_iterators())
+      if (!cell->is_artificial())
+        {
+          const auto nodes = nodes_of(cell);
+          for (const unsigned int v : cell->vertex_indices())
+            positions[nodes[v]] = cell->vertex(v);
+        }
+  }
+
+  template <int dim>
+  std::array<unsigned int, (1u << dim)>
+  BackgroundGrid<dim>::nodes_of(const CellIterator &cell) const
+  {
+    std::array<unsigned int, (1u << dim)> nodes;
+    for (const unsigned int v : cell->vertex_indices())
+      nodes[v] = local_index(cell->vertex_dof_index(v, 0)) / dim;
+    return nodes;
+  }
+
+  template <int dim>
+  void
+  BackgroundGrid<dim>::move_face(const unsigned int face, const double position)
+  {
+    const unsigned int d       = face / 2;
+    const double       fixed   = face_position(face ^ 1u);
+    const double       before  = face_position(face);
+    const double       stretch = (position - fixed) / (before - fixed);
+    GridTools::transform(
+      [&](const Point<dim> &vertex) {
+        Point<dim> moved = vertex;
+        moved[d]         = vertex[d] == before ? position :
+                                                 fixed + stretch * (vertex[d] - fixed);
+        return moved;
+      },
+      triangulation);
+    (face % 2 == 0 ? lower_corner : upper_corner)[d] = position;
+    locate_nodes();
+  }
+
+  template <int dim>
+  double
+  BackgroundGrid<dim>::smallest_cell_extent() const
+  {
+    double extent = std::numeric_limits<double>::max();
+    for (const auto &cell : triangulation.active_cell_iterators())
+      if (cell->is_locally_owned())
+        for (unsigned int d = 0; d < dim; ++d)
+          extent = std::min(extent, cell->extent_in_direction(d));
+    return Utilities::MPI::min(extent, communicator);
+  }
+
+  template <int dim>
+  void
+  BackgroundGrid<dim>::initialize(Vector &vector) const
+  {
+    vector.reinit(partitioner);
+  }
+
+  template class BackgroundGrid<2>;
+  template class BackgroundGrid<3>;
+} // namespace impm

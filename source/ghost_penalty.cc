@@ -1,0 +1,207 @@
+#include <deal.II/base/quadrature_lib.h>
+
+#include <deal.II/fe/fe_q.h>
+#include <deal.II/fe/fe_values.h>
+
+#include <deal.II/grid/grid_tools.h>
+
+#include <impm/ghost_penalty.h>
+
+namespace impm
+{
+  using namespace dealii;
+
+  namespace
+  {
+    template <int dim>
+    using CellIterator = typename BackgroundGrid<dim>::CellIterator;
+
+    /** Fills the ghost cells of data by active cell index. Collective. */
+    template <int dim>
+    void
+    exchange(const BackgroundGrid<dim> &grid, std::vector<double> &cell_data)
+    {
+      GridTools::exchange_cell_data_to_ghosts<double>(
+        grid.dof_handler,
+        [&](const CellIterator<dim> &cell) {
+          return cell_data[cell->active_cell_index()];
+        },
+        [&](const CellIterator<dim> &cell, const double value) {
+          cell_data[cell->active_cell_index()] = value;
+        });
+    }
+
+    /** Calls `action` with every active neighbour of a cell. */
+    template <int dim, typename Action>
+    void
+    for_each_neighbor(const CellIterator<dim> &cell, const Action &action)
+    {
+      for (const unsigned int f : cell->face_indices())
+        if (!cell->at_boundary(f))
+          {
+            const auto neighbor = cell->neighbor(f);
+            if (!neighbor->has_children())
+              action(CellIterator<dim>(neighbor));
+            else
+              for (unsigned int s = 0; s < cell->face(f)->n_children(); ++s)
+                action(
+                  CellIterator<dim>(cell->neighbor_child_on_subface(f, s)));
+          }
+    }
+
+    /** Whether this rank, coming from this cell, works on the face. */
+    template <int dim>
+    bool
+    works_on(const CellIterator<dim> &cell, const unsigned int f)
+    {
+      const auto neighbor = cell->neighbor(f);
+      if (neighbor->has_children())
+        return false;
+      if (cell->neighbor_is_coarser(f))
+        return true;
+      if (neighbor->is_locally_owned())
+        return cell->active_cell_index() < neighbor->active_cell_index();
+      return cell->subdomain_id() < neighbor->subdomain_id();
+    }
+  } // namespace
+
+  template <int dim>
+  void
+  GhostPenalty<dim>::build(const Footprints<dim>     &footprints,
+                           const MaterialPoints<dim> &points,
+                           const BackgroundGrid<dim> &grid,
+                           const double               gamma)
+  {
+    faces.clear();
+    if (gamma == 0)
+      return;
+
+    // Stiffness of every cell, zero where there is no material.
+    std::vector<double> stiffness(grid.triangulation.n_active_cells());
+    for (const auto &cell : footprints.cells)
+      {
+        double smallest = std::numeric_limits<double>::max();
+        for (unsigned int e = cell.begin; e < cell.end; ++e)
+          smallest = std::min(smallest,
+                              points.material(footprints.point[e]).stiffness());
+        stiffness[cell.cell->active_cell_index()] = smallest;
+      }
+    exchange(grid, stiffness);
+
+    std::vector<double> at_edge(stiffness.size());
+    for (const auto &cell : footprints.cells)
+      for_each_neighbor<dim>(cell.cell, [&](const auto &neighbor) {
+        if (stiffness[neighbor->active_cell_index()] == 0)
+          at_edge[cell.cell->active_cell_index()] = 1;
+      });
+    exchange(grid, at_edge);
+
+    const FE_Q<dim>       fe(1);
+    const QGauss<dim - 1> quadrature(2);
+    const UpdateFlags     flags = update_gradients | update_normal_vectors |
+                              update_quadrature_points | update_JxW_values;
+    FEFaceValues<dim>      here(grid.mapping, fe, quadrature, flags);
+    FEFaceValues<dim>      there(grid.mapping, fe, quadrature, flags);
+    FESubfaceValues<dim>   there_coarser(grid.mapping, fe, quadrature, flags);
+    constexpr unsigned int half = n_nodes / 2;
+    const bool             axisymmetric =
+      points.layout.geometry == GeometryKind::axisymmetric;
+
+    for (const auto &populated : footprints.cells)
+      for (const unsigned int f : populated.cell->face_indices())
+        {
+          const auto &cell = populated.cell;
+          if (cell->at_boundary(f) || !works_on<dim>(cell, f))
+            continue;
+          const CellIterator<dim> neighbor(cell->neighbor(f));
+          const unsigned int      i = cell->active_cell_index(),
+                             j      = neighbor->active_cell_index();
+          if (stiffness[j] == 0 || (at_edge[i] == 0 && at_edge[j] == 0))
+            continue;
+
+          const typename Triangulation<dim>::active_cell_iterator tria_cell(
+            cell),
+            tria_neighbor(neighbor);
+          here.reinit(tria_cell, f);
+          const FEValuesBase<dim> *other = &there;
+          if (cell->neighbor_is_coarser(f))
+            {
+              const auto [face, subface] =
+                cell->neighbor_of_coarser_neighbor(f);
+              there_coarser.reinit(tria_neighbor, face, subface);
+              other = &there_coarser;
+            }
+          else
+            there.reinit(tria_neighbor, cell->neighbor_of_neighbor(f));
+
+          Face face;
+          face.cells           = {{cell, neighbor}};
+          const auto neighbors = grid.nodes_of(neighbor);
+          for (unsigned int v = 0; v < half; ++v)
+            {
+              face.nodes[v]        = populated.nodes[v];
+              face.nodes[half + v] = neighbors[v];
+            }
+          const double weight = gamma * std::min(stiffness[i], stiffness[j]) *
+                                cell->extent_in_direction(f / 2);
+          for (const unsigned int q : here.quadrature_point_indices())
+            {
+              std::array<double, n_nodes> jump;
+              for (unsigned int v = 0; v < half; ++v)
+                {
+                  jump[v] = here.shape_grad(v, q) * here.normal_vector(q);
+                  jump[half + v] =
+                    -(other->shape_grad(v, q) * here.normal_vector(q));
+                }
+              const double around =
+                axisymmetric ? 2 * numbers::PI * here.quadrature_point(q)[0] :
+                               1.;
+              for (unsigned int a = 0; a < n_nodes; ++a)
+                for (unsigned int b = 0; b < n_nodes; ++b)
+                  face.matrix[a][b] +=
+                    weight * around * here.JxW(q) * jump[a] * jump[b];
+            }
+          faces.push_back(face);
+        }
+  }
+
+  template <int dim>
+  void
+  GhostPenalty<dim>::add_force(const Vector &u,
+                               const double  factor,
+                               Vector       &force) const
+  {
+    for (const auto &face : faces)
+      for (unsigned int c = 0; c < dim; ++c)
+        {
+          std::array<double, n_nodes> values;
+          for (unsigned int b = 0; b < n_nodes; ++b)
+            values[b] = factor * u.local_element(dim * face.nodes[b] + c);
+          for (unsigned int a = 0; a < n_nodes; ++a)
+            {
+              double sum = 0;
+              for (unsigned int b = 0; b < n_nodes; ++b)
+                sum += face.matrix[a][b] * values[b];
+              force.local_element(dim * face.nodes[a] + c) += sum;
+            }
+        }
+  }
+
+  template <int dim>
+  double
+  GhostPenalty<dim>::energy(const Vector &u) const
+  {
+    double sum = 0;
+    for (const auto &face : faces)
+      for (unsigned int c = 0; c < dim; ++c)
+        for (unsigned int a = 0; a < n_nodes; ++a)
+          for (unsigned int b = 0; b < n_nodes; ++b)
+            sum += 0.5 * face.matrix[a][b] *
+                   u.local_element(dim * face.nodes[a] + c) *
+                   u.local_element(dim * face.nodes[b] + c);
+    return sum;
+  }
+
+  template class GhostPenalty<2>;
+  template class GhostPenalty<3>;
+} // namespace impm

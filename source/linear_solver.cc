@@ -1,0 +1,215 @@
+#include <deal.II/lac/precondition.h>
+#include <deal.II/lac/solver_cg.h>
+#include <deal.II/lac/solver_control.h>
+#include <deal.II/lac/solver_gmres.h>
+#include <deal.II/lac/trilinos_solver.h>
+
+#include <impm/exceptions.h>
+#include <impm/linear_solver.h>
+
+#include <Teuchos_ParameterList.hpp>
+
+namespace impm
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** A diagonal matrix, by its inverse. */
+    struct JacobiPreconditioner
+    {
+      const Vector &inverse_diagonal;
+
+      void
+      vmult(Vector &dst, const Vector &src) const
+      {
+        dst = src;
+        dst.scale(inverse_diagonal);
+      }
+    };
+
+    /** Either form of the tangent, for deal.II's solvers. */
+    struct Operator
+    {
+      std::function<void(Vector &, const Vector &)> apply;
+
+      void
+      vmult(Vector &dst, const Vector &src) const
+      {
+        apply(dst, src);
+      }
+    };
+  } // namespace
+
+  template <int dim>
+  LinearSolver<dim>::LinearSolver(const SolverSpec           &spec,
+                                  const MomentumBalance<dim> &balance,
+                                  TimerOutput                &timer)
+    : spec(spec)
+    , balance(balance)
+    , timer(timer)
+  {
+    balance.grid.initialize(inverse_diagonal);
+  }
+
+  template <int dim>
+  void
+  LinearSolver<dim>::begin_step()
+  {
+    matrix_is_current = false;
+    if (needs_matrix())
+      {
+        TimerOutput::Scope scope(timer, "sparsity");
+        balance.initialize_matrix(matrix);
+      }
+  }
+
+  template <int dim>
+  void
+  LinearSolver<dim>::update_preconditioner()
+  {
+    if (spec.preconditioner == "Jacobi")
+      {
+        balance.diagonal(inverse_diagonal);
+        for (unsigned int i = 0; i < inverse_diagonal.locally_owned_size(); ++i)
+          inverse_diagonal.local_element(i) =
+            1 / inverse_diagonal.local_element(i);
+      }
+    else if (spec.preconditioner == "AMG")
+      {
+        TimerOutput::Scope scope(timer, "preconditioner");
+        // ML keeps the address of the modes. Rotations are modes of plane and
+        // solid bodies; around the axis there are none.
+        const auto        &positions = balance.grid.node_positions();
+        const bool         rotations = balance.has_rotations();
+        const unsigned int n_modes =
+          dim + (rotations ? dim * (dim - 1) / 2 : 0);
+        const unsigned int n = inverse_diagonal.locally_owned_size();
+        rigid_body_modes.assign(std::max(1u, n * n_modes), 0.);
+        for (unsigned int i = 0; i < n; ++i)
+          {
+            if (balance.constraints.is_constrained[i])
+              continue;
+            const unsigned int c        = i % dim;
+            rigid_body_modes[c * n + i] = 1;
+            unsigned int mode           = dim;
+            if (rotations)
+              for (unsigned int a = 0; a < dim; ++a)
+                for (unsigned int b = a + 1; b < dim; ++b, ++mode)
+                  rigid_body_modes[mode * n + i] =
+                    c == a ? -positions[i / dim][b] :
+                    c == b ? positions[i / dim][a] :
+                             0.;
+          }
+        Teuchos::ParameterList                            parameters;
+        TrilinosWrappers::PreconditionAMG::AdditionalData data;
+        data.elliptic              = true;
+        data.higher_order_elements = false;
+        data.smoother_sweeps       = 2;
+        data.aggregation_threshold = 0.02;
+        std::unique_ptr<Epetra_MultiVector> unused;
+        data.set_parameters(parameters, unused, matrix);
+        parameters.set("null space: type", "pre-computed");
+        parameters.set("null space: dimension", static_cast<int>(n_modes));
+        parameters.set("null space: vectors", rigid_body_modes.data());
+        amg.initialize(matrix, parameters);
+      }
+  }
+
+  template <int dim>
+  unsigned int
+  LinearSolver<dim>::iterate(Vector &x, const Vector &b, const double tolerance)
+  {
+    SolverControl control(spec.linear_iterations, tolerance * b.l2_norm());
+    Operator      tangent;
+    if (spec.matrix_free)
+      tangent.apply = [&](Vector &dst, const Vector &src) {
+        balance.vmult(dst, src);
+      };
+    else
+      tangent.apply = [&](Vector &dst, const Vector &src) {
+        ++balance.n_operator_applications;
+        matrix.vmult(dst, src);
+      };
+    const auto run = [&](auto &solver) {
+      if (spec.preconditioner == "AMG")
+        solver.solve(tangent, x, b, amg);
+      else if (spec.preconditioner == "Jacobi")
+        solver.solve(tangent, x, b, JacobiPreconditioner{inverse_diagonal});
+      else
+        solver.solve(tangent, x, b, PreconditionIdentity());
+    };
+    if (spec.linear_solver == "CG")
+      {
+        SolverCG<Vector> solver(control);
+        run(solver);
+      }
+    else
+      {
+        SolverGMRES<Vector>::AdditionalData data;
+        data.max_n_tmp_vectors     = spec.gmres_directions + 2;
+        data.right_preconditioning = true;
+        SolverGMRES<Vector> solver(control, data);
+        run(solver);
+      }
+    return control.last_step();
+  }
+
+  template <int dim>
+  void
+  LinearSolver<dim>::solve_directly(Vector &x, const Vector &b)
+  {
+    TimerOutput::Scope scope(timer, "direct solver");
+    if (!needs_matrix())
+      balance.initialize_matrix(matrix);
+    if (!matrix_is_current)
+      balance.assemble(matrix);
+    matrix_is_current = true;
+    try
+      {
+        SolverControl                                  control;
+        TrilinosWrappers::SolverDirect::AdditionalData data;
+        TrilinosWrappers::SolverDirect                 solver(control, data);
+        solver.solve(matrix, x, b);
+      }
+    catch (const dealii::ExceptionBase &)
+      {
+        throw ComputationError("the linear system is singular");
+      }
+  }
+
+  template <int dim>
+  unsigned int
+  LinearSolver<dim>::solve(Vector &x, const Vector &b, const double tolerance)
+  {
+    x                 = 0;
+    matrix_is_current = false;
+    if (needs_matrix())
+      {
+        TimerOutput::Scope scope(timer, "assembly");
+        balance.assemble(matrix);
+        matrix_is_current = true;
+      }
+    if (spec.linear_solver == "direct")
+      {
+        solve_directly(x, b);
+        return 1;
+      }
+    update_preconditioner();
+    try
+      {
+        TimerOutput::Scope scope(timer, "iterative solver");
+        return iterate(x, b, tolerance);
+      }
+    catch (const dealii::ExceptionBase &)
+      {
+        ++n_fallbacks;
+        x = 0;
+        solve_directly(x, b);
+        return spec.linear_iterations;
+      }
+  }
+
+  template class LinearSolver<2>;
+  template class LinearSolver<3>;
+} // namespace impm

@@ -1,0 +1,125 @@
+#include <deal.II/base/mpi.h>
+
+#include <impm/exceptions.h>
+#include <impm/parameter_listing.h>
+#include <impm/simulation.h>
+#include <impm/version.h>
+
+#include <filesystem>
+#include <iostream>
+#include <new>
+#include <sstream>
+
+namespace
+{
+  using namespace impm;
+
+  template <int dim>
+  void
+  run(const CommandLine &line, ParameterFile &file)
+  {
+    const Scene<dim> scene = read_scene<dim>(file.handler());
+    Simulation<dim>  simulation(scene, line.verbosity, MPI_COMM_WORLD);
+    simulation.describe();
+    if (line.action == CommandLine::Action::check)
+      return;
+
+    const std::string name =
+      std::filesystem::path(line.parameter_file).stem().string();
+    std::string directory = line.output_directory;
+    if (directory.empty())
+      directory = scene.output.directory;
+    if (directory.empty())
+      directory = "output/" + name;
+    std::ostringstream parameters;
+    file.handler().print_parameters(
+      parameters,
+      dealii::ParameterHandler::ShortPRM |
+        dealii::ParameterHandler::KeepDeclarationOrder);
+    simulation.run(directory, name, parameters.str());
+  }
+
+  void
+  dispatch(const CommandLine &line)
+  {
+    const bool first =
+      dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
+    switch (line.action)
+      {
+        case CommandLine::Action::print_help:
+          if (first)
+            std::cout << command_line_help();
+          return;
+        case CommandLine::Action::print_version:
+          if (first)
+            std::cout << "impm_dealii " << version << ' ' << git_revision
+                      << '\n';
+          return;
+        case CommandLine::Action::print_parameters:
+          if (first)
+            print_parameter_listing(std::cout);
+          return;
+        default:
+          break;
+      }
+    ParameterFile file(line.parameter_file, line.overrides, declare_scene);
+    try
+      {
+        if (scene_dimension(file.handler()) == 3)
+          run<3>(line, file);
+        else
+          run<2>(line, file);
+      }
+    catch (const InputError &error)
+      {
+        // Say where the entry stands.
+        if (error.entry.empty())
+          throw;
+        throw InputError("",
+                         file.locate(error.entry) + ": entry '" + error.entry +
+                           "': " + error.what());
+      }
+  }
+} // namespace
+
+int
+main(int argc, char **argv)
+{
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  const bool                               first =
+    dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
+  const auto say = [&](const std::string &what, const std::string &why) {
+    if (first)
+      std::cerr << "impm_dealii: " << what << why << std::endl;
+  };
+  // A failure of one rank alone would leave the others waiting.
+  const auto fail_alone = [&](const std::string &why) {
+    std::cerr << "impm_dealii: system failure: " << why << std::endl;
+    if (dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
+      MPI_Abort(MPI_COMM_WORLD, 3);
+    return 3;
+  };
+  try
+    {
+      dispatch(parse_command_line(argc, argv));
+    }
+  catch (const InputError &error)
+    {
+      say("bad input: ", error.what());
+      return 1;
+    }
+  catch (const ComputationError &error)
+    {
+      say("the computation cannot go on: ", error.what());
+      return 2;
+    }
+  catch (const std::bad_alloc &)
+    {
+      return fail_alone("out of memory");
+    }
+  catch (const std::exception &error)
+    {
+      return fail_alone(error.what());
+    }
+  return 0;
+}

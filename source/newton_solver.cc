@@ -1,0 +1,164 @@
+#include <impm/newton_solver.h>
+
+#include <cmath>
+
+namespace impm
+{
+  using namespace dealii;
+
+  template <int dim>
+  NewtonSolver<dim>::NewtonSolver(const SolverSpec     &spec,
+                                  MomentumBalance<dim> &balance,
+                                  LinearSolver<dim>    &linear_solver,
+                                  const bool            has_potential,
+                                  TimerOutput          &timer)
+    : spec(spec)
+    , balance(balance)
+    , linear_solver(linear_solver)
+    , has_potential(has_potential)
+    , timer(timer)
+  {
+    for (Vector *vector : {&step, &trial, &right_side})
+      balance.grid.initialize(*vector);
+  }
+
+  template <int dim>
+  typename NewtonSolver<dim>::Evaluation
+  NewtonSolver<dim>::evaluate(const Vector &u)
+  {
+    TimerOutput::Scope scope(timer, "points");
+    return balance.evaluate(u);
+  }
+
+  template <int dim>
+  bool
+  NewtonSolver<dim>::start(Vector &u, Result &result)
+  {
+    // A prescribed motion alone would crush the cells next to it. From the
+    // guess without it, one linear solve takes it into the body.
+    balance.constraints.interpolate_hanging(u);
+    if (!evaluate(u).admissible)
+      {
+        u = 0;
+        if (!evaluate(u).admissible)
+          return false;
+      }
+    trial = u;
+    balance.constraints.set_prescribed(trial);
+    trial -= u;
+    if (trial.linfty_norm() == 0)
+      return true;
+
+    // `lift` is the prescribed part, the free part follows from it.
+    step = trial;
+    for (unsigned int i = 0; i < step.locally_owned_size(); ++i)
+      if (!balance.constraints.is_constrained[i])
+        step.local_element(i) = 0;
+    Vector lift = step;
+    balance.vmult_lift(right_side, lift);
+    right_side += balance.residual();
+    right_side *= -1.;
+    result.linear_iterations +=
+      linear_solver.solve(step, right_side, spec.linear_tolerance);
+    ++result.iterations;
+    u += lift;
+    u += step;
+    balance.constraints.set_prescribed(u);
+    return true;
+  }
+
+  template <int dim>
+  typename NewtonSolver<dim>::Result
+  NewtonSolver<dim>::solve(Vector &u)
+  {
+    Result result;
+    if (!start(u, result))
+      {
+        result.failure = "no stress at the start of the step";
+        return result;
+      }
+    Evaluation now = evaluate(u);
+    if (!now.admissible)
+      {
+        result.failure = "the first guess turns a point inside out";
+        return result;
+      }
+
+    for (;;)
+      {
+        result.residuals.push_back(now.residual);
+        if (now.residual <= spec.newton_tolerance ||
+            now.residual <= now.round_off)
+          {
+            result.converged        = true;
+            result.stopped_at_noise = now.residual > spec.newton_tolerance;
+            return result;
+          }
+        if (result.iterations >= spec.newton_iterations)
+          {
+            result.failure = "Newton's method did not converge";
+            return result;
+          }
+
+        right_side.equ(-1., balance.residual());
+        const auto solve = [&]() {
+          result.linear_iterations +=
+            linear_solver.solve(step, right_side, spec.linear_tolerance);
+          balance.constraints.set_zero(step);
+          return -(step * right_side);
+        };
+        ++result.iterations;
+        double slope = solve();
+        if (has_potential && !(slope < 0))
+          {
+            balance.project_tangent();
+            ++result.projections;
+            slope = solve();
+          }
+        balance.constraints.interpolate_hanging(step);
+        if (!std::isfinite(slope))
+          {
+            result.failure = "the linear solver gave no finite step";
+            return result;
+          }
+
+        // Energies cancel to round-off near the solution: hence the slack.
+        const double before = now.potential, residual_before = now.residual;
+        const double slack  = 1e-9 * std::abs(slope) + 1e-13 * std::abs(before);
+        const auto   accept = [&](const double length) {
+          if (!now.admissible)
+            return false;
+          if (!spec.line_search)
+            return true;
+          if (has_potential && slope < 0)
+            return now.potential <= before + 1e-4 * length * slope + slack ||
+                   now.residual <= 0.1 * residual_before;
+          return now.residual <= (1 - 1e-4 * length) * residual_before;
+        };
+        bool         searched = false;
+        double       length   = 1;
+        const double shortest = 1. / 1024;
+        for (;;)
+          {
+            trial = u;
+            trial.add(length, step);
+            now = evaluate(trial);
+            if (accept(length))
+              break;
+            searched = true;
+            length /= 2;
+            if (length < shortest)
+              {
+                result.line_searches += 1;
+                result.failure = "the line search found no descent";
+                return result;
+              }
+          }
+        result.line_searches += searched;
+        u = trial;
+      }
+  }
+
+  template class NewtonSolver<2>;
+  template class NewtonSolver<3>;
+} // namespace impm

@@ -1,0 +1,62 @@
+#include <impm/materials/list.h>
+#include <impm/parameter_listing.h>
+#include <impm/scene.h>
+
+namespace impm
+{
+  namespace
+  {
+    template <typename Entry>
+    std::string
+    names_of(const std::vector<Entry> &entries)
+    {
+      std::string names;
+      for (const auto &entry : entries)
+        names += (names.empty() ? "" : ",") + entry.name;
+      return names;
+    }
+
+    /**
+     * Choices under which every entry is declared: lists hold an item of each
+     * kind, called after it, and an item is what it is called.
+     */
+    std::string
+    choose_everything(const std::string &path, const std::string &fallback)
+    {
+      static const std::map<std::string, std::string> choices = {
+        {"Geometry/Kind", "3D"},
+        {"Geometry/Shapes", names_of(shape_list<3>())},
+        {"Grid/Local refinements", "1"},
+        {"Materials/Names", names_of(material_list())},
+        {"Bodies/Names", "deformable,rigid,from file"},
+        {"Bodies/rigid/Kind", "rigid"},
+        {"Bodies/from file/Points from", "file"},
+        {"Time/Integrator", "theta"},
+        {"Solver/Linear solver", "GMRES"},
+        {"Output/Probes", "point,largest,extent,motion"},
+        {"Output/Reactions", "reaction"}};
+      const auto choice = choices.find(path);
+      if (choice != choices.end())
+        return choice->second;
+      const auto        slash = path.rfind('/');
+      const std::string entry = path.substr(slash + 1);
+      const std::string item =
+        path.substr(path.find('/') + 1, slash - path.find('/') - 1);
+      if (path.rfind("Boundary conditions/", 0) == 0 && entry == "Type")
+        return "velocity";
+      if (entry == "Law" || (entry == "Kind" && path.rfind("Bodies/", 0) != 0))
+        return item;
+      return fallback;
+    }
+  } // namespace
+
+  void
+  print_parameter_listing(std::ostream &out)
+  {
+    dealii::ParameterHandler prm;
+    declare_scene(prm, choose_everything);
+    prm.print_parameters(out,
+                         dealii::ParameterHandler::Description |
+                           dealii::ParameterHandler::KeepDeclarationOrder);
+  }
+} // namespace impm

@@ -1,0 +1,492 @@
+#include <deal.II/base/utilities.h>
+
+#include <impm/exceptions.h>
+#include <impm/materials/list.h>
+#include <impm/scene.h>
+
+#include <algorithm>
+#include <set>
+
+namespace impm
+{
+  using dealii::FunctionParser;
+  using dealii::ParameterHandler;
+
+  namespace
+  {
+    using Constants = std::map<std::string, double>;
+
+    Constants
+    read_constants(const ParameterHandler &prm)
+    {
+      Constants constants{{"pi", 3.14159265358979323846}};
+      for (const auto &pair : split_names(prm.get("Constants")))
+        {
+          const auto parts = dealii::Utilities::split_string_list(pair, '=');
+          try
+            {
+              if (parts.size() != 2)
+                throw InputError("", "");
+              constants[parts[0]] =
+                dealii::Utilities::string_to_double(parts[1]);
+            }
+          catch (...)
+            {
+              throw InputError("Constants",
+                               "found '" + pair +
+                                 "', allowed is 'name = number'");
+            }
+        }
+      return constants;
+    }
+
+    /** Expressions between semicolons; null when the entry is empty. */
+    template <int n_variables>
+    std::shared_ptr<FunctionParser<n_variables>>
+    read_function(const ParameterHandler &prm,
+                  const std::string      &entry,
+                  const unsigned int      n_components,
+                  const bool              with_time,
+                  const Constants        &constants)
+    {
+      const std::string text = prm.get(entry);
+      if (text.empty())
+        return nullptr;
+      const auto expressions = dealii::Utilities::split_string_list(text, ';');
+      if (expressions.size() != n_components)
+        throw InputError(entry,
+                         "found '" + text + "', allowed are " +
+                           std::to_string(n_components) +
+                           " expressions between semicolons");
+      auto function =
+        std::make_shared<FunctionParser<n_variables>>(n_components);
+      std::string variables =
+        n_variables == 1 ?
+          "t" :
+          FunctionParser<n_variables>::default_variable_names();
+      if (with_time && n_variables > 1)
+        variables += ",t";
+      try
+        {
+          function->initialize(variables,
+                               expressions,
+                               constants,
+                               with_time && n_variables > 1);
+          // muparser compiles at the first use: do it here, where a mistake
+          // can still be named.
+          dealii::Vector<double> value(n_components);
+          function->vector_value(dealii::Point<n_variables>(), value);
+        }
+      catch (const dealii::ExceptionBase &exception)
+        {
+          std::ostringstream info;
+          exception.print_info(info);
+          std::istringstream in(info.str());
+          std::string        word, reason;
+          while (in >> word)
+            reason += " " + word;
+          throw InputError(entry, "found '" + text + "':" + reason);
+        }
+      return function;
+    }
+
+    template <int dim>
+    dealii::Point<dim>
+    read_point(const ParameterHandler &prm, const std::string &entry)
+    {
+      const auto         values = get_numbers(prm, entry, dim);
+      dealii::Point<dim> point;
+      std::copy(values.begin(), values.end(), point.begin_raw());
+      return point;
+    }
+
+    template <int dim>
+    GridSpec<dim>
+    read_grid(const ParameterHandler &prm, const Constants &constants)
+    {
+      GridSpec<dim> grid;
+      grid.lower_corner = read_point<dim>(prm, "Lower corner");
+      grid.upper_corner = read_point<dim>(prm, "Upper corner");
+      const auto cells  = get_numbers(prm, "Cells", dim);
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          grid.cells[d] = static_cast<unsigned int>(cells[d]);
+          if (!(grid.lower_corner[d] < grid.upper_corner[d]))
+            throw InputError("Upper corner",
+                             "found '" + prm.get("Upper corner") +
+                               "', allowed is a corner above 'Lower corner' "
+                               "in every direction");
+        }
+      grid.refinement_levels = prm.get_integer("Local refinements");
+      if (grid.refinement_levels > 0)
+        grid.refine_where =
+          read_function<dim>(prm, "Refine where", 1, false, constants);
+      return grid;
+    }
+
+    template <int dim>
+    FaceSpec<dim>
+    read_face(const ParameterHandler &prm,
+              const unsigned int      face,
+              const Constants        &constants)
+    {
+      FaceSpec<dim> spec;
+      spec.name                 = face_names()[face];
+      const std::string  type   = prm.get("Type");
+      const unsigned int normal = face / 2;
+      const bool only_normal = type == "slip" || type.rfind("normal", 0) == 0;
+      for (unsigned int d = 0; d < dim; ++d)
+        spec.constrained[d] = type != "free" && (!only_normal || d == normal);
+      if (type == "free" || type == "fixed" || type == "slip")
+        return spec;
+      spec.is_velocity = type.find("velocity") != std::string::npos;
+      spec.value       = read_function<dim>(
+        prm, "Value", only_normal ? 1 : dim, true, constants);
+      if (!spec.value)
+        throw InputError("Value", "found nothing, allowed are expressions");
+      spec.moves_grid = prm.get_bool("Moves the grid");
+      return spec;
+    }
+
+    template <int dim>
+    BodySpec<dim>
+    read_body(const ParameterHandler                                 &prm,
+              const std::string                                      &name,
+              const NamedShapes<dim>                                 &shapes,
+              const std::map<std::string, std::shared_ptr<Material>> &materials,
+              const bool                                              inertia,
+              const Constants                                        &constants)
+    {
+      const auto pick = [&](const auto &choices, const std::string &entry) {
+        const auto it = choices.find(prm.get(entry));
+        if (it != choices.end())
+          return it->second;
+        std::string allowed;
+        for (const auto &choice : choices)
+          allowed += (allowed.empty() ? "" : ", ") + choice.first;
+        throw InputError(entry,
+                         "found '" + prm.get(entry) + "', allowed are: " +
+                           (allowed.empty() ? "none, since none is named" :
+                                              allowed));
+      };
+
+      BodySpec<dim> body;
+      body.name  = name;
+      body.rigid = prm.get("Kind") == "rigid";
+      if (prm.get("Points from") == "shape")
+        {
+          body.shape           = pick(shapes, "Shape");
+          body.points_per_cell = prm.get_integer("Points per cell");
+        }
+      else
+        body.point_file = prm.get("File");
+      if (body.rigid)
+        {
+          body.displacement =
+            read_function<1>(prm, "Displacement", dim, true, constants);
+          const std::string contact = prm.get("Contact");
+          if (contact != "no slip")
+            body.slip_normal = contact.back() - 'x';
+          if (contact != "no slip" && body.slip_normal >= dim)
+            throw InputError("Contact",
+                             "found '" + contact +
+                               "', allowed in 2D are no "
+                               "slip, slip x, slip y");
+        }
+      else
+        {
+          body.material = pick(materials, "Material");
+          if (inertia)
+            body.velocity =
+              read_function<dim>(prm, "Velocity", dim, false, constants);
+        }
+      return body;
+    }
+
+    TimeSpec
+    read_time(const ParameterHandler &prm)
+    {
+      TimeSpec time;
+      time.integrator = prm.get("Integrator");
+      if (time.integrator == "theta")
+        time.theta = prm.get_double("Theta");
+      time.end          = prm.get_double("End time");
+      time.step         = prm.get_double("Time step");
+      time.growth       = prm.get_double("Growth");
+      time.largest_step = time.step;
+      if (!prm.get("Largest time step").empty())
+        time.largest_step = get_numbers(prm, "Largest time step", 1)[0];
+      if (time.largest_step < time.step)
+        throw InputError("Largest time step",
+                         "found '" + prm.get("Largest time step") +
+                           "', allowed is at least 'Time step' = " +
+                           prm.get("Time step"));
+      if (time.growth > 1 && time.largest_step == time.step)
+        throw InputError("Growth",
+                         "found '" + prm.get("Growth") +
+                           "', which does nothing without a 'Largest time "
+                           "step' above 'Time step'");
+      time.smallest_step           = prm.get_double("Smallest time step");
+      time.largest_number_of_steps = prm.get_integer("Largest number of steps");
+      return time;
+    }
+
+    SolverSpec
+    read_solver(const ParameterHandler &prm)
+    {
+      SolverSpec solver;
+      solver.newton_tolerance  = prm.get_double("Newton tolerance");
+      solver.newton_iterations = prm.get_integer("Newton iterations");
+      solver.line_search       = prm.get_bool("Line search");
+      solver.linear_solver     = prm.get("Linear solver");
+      if (solver.linear_solver != "direct")
+        {
+          solver.linear_tolerance  = prm.get_double("Linear tolerance");
+          solver.linear_iterations = prm.get_integer("Linear iterations");
+          solver.preconditioner    = prm.get("Preconditioner");
+          solver.matrix_free       = prm.get("Operator") == "matrix-free";
+        }
+      if (solver.linear_solver == "GMRES")
+        solver.gmres_directions = prm.get_integer("GMRES directions");
+      return solver;
+    }
+
+    ProbeSpec
+    read_probe(const ParameterHandler &prm,
+               const std::string      &name,
+               const unsigned int      dim)
+    {
+      const std::vector<std::string> kinds = {
+        "point", "largest", "smallest", "mean", "extent", "motion"};
+      const std::string kind = prm.get("Kind");
+
+      ProbeSpec probe;
+      probe.name = name;
+      probe.kind = static_cast<ProbeSpec::Kind>(
+        std::find(kinds.begin(), kinds.end(), kind) - kinds.begin());
+      if (kind == "point")
+        probe.position = get_numbers(prm, "Position", dim);
+      else if (kind == "motion")
+        probe.of = prm.get("Of");
+      else
+        probe.bodies = split_names(prm.get("Bodies"));
+      if (kind != "motion" && kind != "extent")
+        probe.field = prm.get("Field");
+      probe.component = prm.get_integer("Component");
+      probe.factor    = prm.get_double("Factor");
+      return probe;
+    }
+
+    template <int dim>
+    OutputSpec
+    read_output(ParameterHandler &prm)
+    {
+      OutputSpec output;
+      output.directory        = prm.get("Directory");
+      output.pictures         = prm.get_bool("Pictures");
+      output.picture_interval = 0;
+      output.picture_steps    = 1;
+      if (output.pictures)
+        {
+          output.picture_interval = prm.get_double("Time between pictures");
+          if (output.picture_interval == 0)
+            output.picture_steps = prm.get_integer("Steps between pictures");
+          output.point_fields = split_names(prm.get("Point fields"));
+        }
+      for (const auto &name : split_names(prm.get("Probes")))
+        in_section(prm, name, [&]() {
+          output.probes.push_back(read_probe(prm, name, dim));
+        });
+      for (const auto &name : split_names(prm.get("Reactions")))
+        in_section(prm, name, [&]() {
+          output.reactions.push_back({name,
+                                      prm.get("On"),
+                                      get_numbers(prm, "Direction", dim),
+                                      prm.get_double("Factor")});
+        });
+      return output;
+    }
+
+    std::string
+    join(const std::vector<std::string> &names)
+    {
+      std::string all;
+      for (const auto &name : names)
+        all += (all.empty() ? "" : ", ") + name;
+      return all.empty() ? "none" : all;
+    }
+
+    /** What no single section can tell. */
+    template <int dim>
+    void
+    check(const Scene<dim> &scene)
+    {
+      bool deformable = false;
+      for (const auto &body : scene.bodies)
+        {
+          deformable = deformable || !body.rigid;
+          const auto box =
+            body.shape ? body.shape->bounding_box() : std::nullopt;
+          if (!box)
+            continue;
+          for (unsigned int d = 0; d < dim; ++d)
+            {
+              const double lower = box->lower_bound(d),
+                           upper = box->upper_bound(d);
+              const double slack = 1e-10 * (upper - lower);
+              if (lower < scene.grid.lower_corner[d] - slack ||
+                  upper > scene.grid.upper_corner[d] + slack)
+                throw InputError(
+                  "Bodies/" + body.name + "/Shape",
+                  "body '" + body.name + "' reaches from " +
+                    std::to_string(lower) + " to " + std::to_string(upper) +
+                    " m in direction " + "xyz"[d] + ", allowed is the grid's " +
+                    std::to_string(scene.grid.lower_corner[d]) + " to " +
+                    std::to_string(scene.grid.upper_corner[d]) + " m");
+            }
+        }
+      if (!deformable)
+        throw InputError("Bodies/Names",
+                         "found no deformable body, allowed is at least one");
+      if (scene.geometry == GeometryKind::axisymmetric &&
+          scene.grid.lower_corner[0] < 0)
+        throw InputError("Grid/Lower corner",
+                         "found a negative radius, allowed is r >= 0");
+
+      unsigned int movers = 0;
+      for (unsigned int f = 0; f < 2 * dim; ++f)
+        if (scene.faces[f].moves_grid && ++movers > 1)
+          throw InputError("Boundary conditions/" + face_names()[f] +
+                             "/Moves the grid",
+                           "found a second face that moves the grid, allowed "
+                           "is one");
+
+      std::vector<std::string> carriers, movable, deformables;
+      for (const auto &face : scene.faces)
+        if (std::count(face.constrained.begin(), face.constrained.end(), true))
+          {
+            carriers.push_back(face.name);
+            if (face.moves_grid)
+              movable.push_back(face.name);
+          }
+      for (const auto &body : scene.bodies)
+        if (body.rigid)
+          {
+            carriers.push_back(body.name);
+            movable.push_back(body.name);
+          }
+        else
+          deformables.push_back(body.name);
+      const auto require = [](const std::vector<std::string> &allowed,
+                              const std::string              &found,
+                              const std::string              &entry) {
+        if (std::find(allowed.begin(), allowed.end(), found) == allowed.end())
+          throw InputError(entry,
+                           "found '" + found +
+                             "', allowed are: " + join(allowed));
+      };
+      for (const auto &reaction : scene.output.reactions)
+        require(carriers, reaction.on, "Output/" + reaction.name + "/On");
+      for (const auto &probe : scene.output.probes)
+        {
+          if (probe.kind == ProbeSpec::Kind::motion)
+            require(movable, probe.of, "Output/" + probe.name + "/Of");
+          for (const auto &body : probe.bodies)
+            require(deformables, body, "Output/" + probe.name + "/Bodies");
+          if (probe.component >= dim &&
+              (probe.kind == ProbeSpec::Kind::extent ||
+               probe.kind == ProbeSpec::Kind::motion))
+            throw InputError("Output/" + probe.name + "/Component",
+                             "found " + std::to_string(probe.component) +
+                               ", allowed is less than " + std::to_string(dim));
+        }
+    }
+  } // namespace
+
+  int
+  scene_dimension(ParameterHandler &prm)
+  {
+    return prm.get({"Geometry"}, "Kind") == "3D" ? 3 : 2;
+  }
+
+  template <int dim>
+  Scene<dim>
+  read_scene(ParameterHandler &prm)
+  {
+    Scene<dim> scene;
+    in_section(prm, "General", [&]() {
+      scene.title     = prm.get("Title");
+      scene.constants = read_constants(prm);
+    });
+
+    NamedShapes<dim> shapes;
+    in_section(prm, "Geometry", [&]() {
+      const std::string kind = prm.get("Kind");
+      scene.geometry         = kind == "3D"           ? GeometryKind::three_d :
+                               kind == "axisymmetric" ? GeometryKind::axisymmetric :
+                                                        GeometryKind::plane_strain;
+      for (const auto &name : split_names(prm.get("Shapes")))
+        in_section(prm, name, [&]() {
+          for (const auto &entry : shape_list<dim>())
+            if (entry.name == prm.get("Kind"))
+              shapes[name] = entry.create(prm, scene.constants, shapes);
+        });
+    });
+    in_section(prm, "Grid", [&]() {
+      scene.grid = read_grid<dim>(prm, scene.constants);
+    });
+
+    std::map<std::string, std::shared_ptr<Material>> materials;
+    in_section(prm, "Materials", [&]() {
+      for (const auto &name : split_names(prm.get("Names")))
+        in_section(prm, name, [&]() {
+          for (const auto &entry : material_list())
+            if (entry.name == prm.get("Law"))
+              materials[name] = entry.create(prm);
+        });
+    });
+    in_section(prm, "Time", [&]() { scene.time = read_time(prm); });
+    in_section(prm, "Bodies", [&]() {
+      std::set<std::string> taken(face_names().begin(), face_names().end());
+      for (const auto &name : split_names(prm.get("Names")))
+        {
+          if (!taken.insert(name).second)
+            throw InputError("Names",
+                             "found '" + name +
+                               "', which is taken by a face or another body");
+          in_section(prm, name, [&]() {
+            scene.bodies.push_back(read_body<dim>(prm,
+                                                  name,
+                                                  shapes,
+                                                  materials,
+                                                  scene.has_inertia(),
+                                                  scene.constants));
+          });
+        }
+    });
+    in_section(prm, "Boundary conditions", [&]() {
+      for (unsigned int f = 0; f < 2 * dim; ++f)
+        in_section(prm, face_names()[f], [&]() {
+          scene.faces[f] = read_face<dim>(prm, f, scene.constants);
+        });
+    });
+    in_section(prm, "Loads", [&]() {
+      scene.body_force =
+        read_function<dim>(prm, "Body force", dim, true, scene.constants);
+    });
+    in_section(prm, "Solver", [&]() { scene.solver = read_solver(prm); });
+    in_section(prm, "Stabilization", [&]() {
+      scene.stabilization.ghost_penalty = prm.get_double("Ghost penalty");
+      scene.stabilization.isolated_stiffness =
+        prm.get_double("Isolated stiffness");
+    });
+    in_section(prm, "Output", [&]() { scene.output = read_output<dim>(prm); });
+    check(scene);
+    return scene;
+  }
+
+  template Scene<2>
+  read_scene<2>(ParameterHandler &);
+  template Scene<3>
+  read_scene<3>(ParameterHandler &);
+} // namespace impm

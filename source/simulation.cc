@@ -1,0 +1,336 @@
+#include <deal.II/base/utilities.h>
+
+#include <impm/checkpoint.h>
+#include <impm/exceptions.h>
+#include <impm/simulation.h>
+#include <impm/summary.h>
+#include <impm/transfer.h>
+
+#include <filesystem>
+#include <sstream>
+
+namespace impm
+{
+  using namespace dealii;
+
+  namespace
+  {
+    template <int dim>
+    bool
+    all_have_potential(const Scene<dim> &scene)
+    {
+      return std::all_of(scene.bodies.begin(),
+                         scene.bodies.end(),
+                         [](const auto &body) {
+                           return body.rigid || body.material->has_potential();
+                         });
+    }
+  } // namespace
+
+  template <int dim>
+  Simulation<dim>::Simulation(const Scene<dim>            &scene,
+                              const CommandLine::Verbosity verbosity,
+                              const MPI_Comm               communicator)
+    : scene(scene)
+    , communicator(communicator)
+    , silence(std::cout, false)
+    , timer(silence, TimerOutput::never, TimerOutput::wall_times)
+    , grid(scene.grid, communicator)
+    , points(scene, grid)
+    , rigid(scene, grid)
+    , integrator(make_time_integrator(scene.time))
+    , balance(scene, grid, points, rigid, *integrator)
+    , linear_solver(scene.solver, balance, timer)
+    , newton(
+        scene.solver, balance, linear_solver, all_have_potential(scene), timer)
+    , pictures(scene.output, points, rigid, balance)
+    , history(scene, points, rigid, balance)
+    , console(verbosity, Utilities::MPI::this_mpi_process(communicator) == 0)
+    , step_size(scene.time.step)
+  {
+    grid.initialize(u);
+    grid.initialize(velocity_change);
+  }
+
+  template <int dim>
+  void
+  Simulation<dim>::describe()
+  {
+    std::ostringstream text;
+    text << (scene.title.empty() ? "scene" : scene.title) << '\n'
+         << "  grid: " << grid.triangulation.n_global_active_cells()
+         << " cells, " << grid.dof_handler.n_dofs() << " unknowns\n"
+         << "  points: " << points.sorted.n_global() << '\n'
+         << "  fields of a point:\n";
+    for (const auto &field : points.layout.fields())
+      text << "    " << field.name << " (" << field.n_components << ")\n";
+    text << "  bytes per point: " << points.bytes_per_point();
+    console.message(text.str());
+  }
+
+  template <int dim>
+  double
+  Simulation<dim>::grid_motion(const unsigned int face) const
+  {
+    return balance.constraints.face_motion(face, time, time + report.dt);
+  }
+
+  template <int dim>
+  bool
+  Simulation<dim>::moves_too_far() const
+  {
+    // Between ranks a point is found only where the neighbour can see it.
+    if (Utilities::MPI::n_mpi_processes(communicator) == 1)
+      return false;
+    const auto motion = [&](const Point<dim> &x) {
+      Tensor<1, dim> displacement;
+      for (unsigned int f = 0; f < 2 * dim; ++f)
+        if (scene.faces[f].moves_grid)
+          {
+            const unsigned int d     = f / 2;
+            const double       fixed = grid.face_position(f ^ 1u);
+            displacement[d] =
+              grid_motion(f) * (x[d] - fixed) / (grid.face_position(f) - fixed);
+          }
+      return displacement;
+    };
+    return largest_motion<dim>(balance, u, points, motion) > 0.95;
+  }
+
+  template <int dim>
+  typename NewtonSolver<dim>::Result
+  Simulation<dim>::attempt(const double dt)
+  {
+    report.dt = dt;
+    {
+      TimerOutput::Scope scope(timer, "set-up of the step");
+      balance.begin_step(time, dt);
+    }
+    linear_solver.begin_step();
+    u = 0;
+    if (integrator->has_inertia())
+      u.equ(dt, balance.velocity);
+    auto result = newton.solve(u);
+    report.newton_iterations += result.iterations;
+    report.linear_iterations += result.linear_iterations;
+    report.line_searches += result.line_searches;
+    report.projections += result.projections;
+    report.noise_stops = result.stopped_at_noise;
+    report.residual    = result.residuals.empty() ? 0 : result.residuals.back();
+    balance.constraints.interpolate_hanging(u);
+    if (result.converged && moves_too_far())
+      {
+        result.converged = false;
+        result.failure   = "a point moves across more than a cell";
+      }
+    return result;
+  }
+
+  template <int dim>
+  void
+  Simulation<dim>::advance()
+  {
+    report = StepReport{
+      report.step + 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, report.external_work, 0};
+    const auto before = linear_solver.n_fallbacks;
+    // The last step ends on time, and none is a sliver.
+    const double left = scene.time.end - time;
+    double       dt   = std::min(step_size, left);
+    if (left < 1.001 * dt)
+      dt = left;
+    for (;;)
+      {
+        const auto result = attempt(dt);
+        if (result.converged)
+          break;
+        ++report.step_cuts;
+        console.detail("  step cut at t = " + std::to_string(time) +
+                       ", dt = " + std::to_string(dt) + ": " + result.failure);
+        dt /= 2;
+        if (dt < scene.time.smallest_step * scene.time.step)
+          {
+            std::ostringstream where;
+            where << "at t = " << time << " s, step " << report.step << ": "
+                  << result.failure << ", and dt = " << dt
+                  << " s is below the smallest time step";
+            throw ComputationError(where.str());
+          }
+      }
+    report.solver_fallbacks = linear_solver.n_fallbacks - before;
+    report.external_work += external_work_of_step();
+    history.take_reactions();
+    commit();
+    report.time         = time;
+    report.wall_seconds = wall.wall_time();
+
+    // After a cut the step grows back.
+    const double recovery = report.step_cuts > 0 ? 1. : 1.5;
+    step_size             = dt >= step_size * 0.999 ?
+                              std::min(dt * scene.time.growth, scene.time.largest_step) :
+                            report.step_cuts > 0 ? dt * recovery :
+                                                   step_size;
+    if (step_size < scene.time.step)
+      step_size = std::min(1.5 * step_size, scene.time.step);
+
+    sums.newton += report.newton_iterations;
+    sums.linear += report.linear_iterations;
+    sums.line_searches += report.line_searches;
+    sums.cuts += report.step_cuts;
+    sums.projections += report.projections;
+    sums.noise_stops += report.noise_stops;
+  }
+
+  template <int dim>
+  double
+  Simulation<dim>::external_work_of_step() const
+  {
+    const auto &forces = balance.constraint_forces();
+    double      work   = 0;
+    for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
+      {
+        if (balance.constraints.is_constrained[i])
+          work += forces.local_element(i) * u.local_element(i);
+        work -= balance.load_at(i) * u.local_element(i);
+      }
+    return Utilities::MPI::sum(work, communicator);
+  }
+
+  template <int dim>
+  void
+  Simulation<dim>::commit()
+  {
+    TimerOutput::Scope scope(timer, "move points and grid");
+    if (integrator->has_inertia())
+      {
+        integrator->end_velocity(report.dt,
+                                 u,
+                                 balance.velocity,
+                                 velocity_change);
+        velocity_change -= balance.velocity;
+        balance.constraints.interpolate_hanging(velocity_change);
+      }
+    advance_points(balance, u, velocity_change, points);
+    bool grid_moves = false;
+    for (unsigned int f = 0; f < 2 * dim; ++f)
+      if (scene.faces[f].moves_grid)
+        {
+          grid.move_face(f, grid.face_position(f) + grid_motion(f));
+          grid_moves = true;
+        }
+    points.sort();
+    if (rigid.size() > 0)
+      rigid.move(time, time + report.dt);
+    else if (grid_moves)
+      rigid.sort();
+    time += report.dt;
+  }
+
+  template <int dim>
+  void
+  Simulation<dim>::picture(const bool grid_has_increment)
+  {
+    TimerOutput::Scope scope(timer, "output");
+    pictures.write(directory, time, grid_has_increment ? &u : nullptr);
+  }
+
+  template <int dim>
+  void
+  Simulation<dim>::save_last_good_state(const std::string &reason)
+  {
+    console.finish();
+    picture(false);
+    write_checkpoint(directory,
+                     {report.step - 1, time, step_size, reason},
+                     grid,
+                     points);
+  }
+
+  template <int dim>
+  void
+  Simulation<dim>::write_summary(const std::string &scene_name,
+                                 const std::string &status)
+  {
+    RunSummary summary;
+    summary.scene           = scene_name;
+    summary.status          = status;
+    summary.dim             = dim;
+    summary.points          = points.sorted.n_global();
+    summary.bytes_per_point = points.bytes_per_point();
+    summary.steps           = report.step;
+    summary.time            = time;
+    summary.counts          = {
+               {"newton_iterations", sums.newton},
+               {"linear_iterations", sums.linear},
+               {"line_searches", sums.line_searches},
+               {"step_cuts", sums.cuts},
+               {"tangent_projections", sums.projections},
+               {"solver_fallbacks", linear_solver.n_fallbacks},
+               {"noise_stops", sums.noise_stops},
+               {"stress_evaluations",
+                Utilities::MPI::sum(balance.n_stress_evaluations, communicator)},
+               {"operator_applications", balance.n_operator_applications}};
+    summary.figures      = history.last_figures();
+    summary.phases       = timer.get_summary_data(TimerOutput::total_wall_time);
+    summary.wall_seconds = wall.wall_time();
+    summary.write(directory, communicator);
+    if (status == "done")
+      console.message(summary.phase_table());
+  }
+
+  template <int dim>
+  void
+  Simulation<dim>::run(const std::string &directory,
+                       const std::string &scene_name,
+                       const std::string &parameters)
+  {
+    this->directory = directory;
+    if (Utilities::MPI::this_mpi_process(communicator) == 0)
+      {
+        std::error_code error;
+        std::filesystem::create_directories(directory, error);
+        if (error)
+          throw SystemError("cannot make the directory '" + directory +
+                            "': " + error.message());
+        replace_file(directory + "/parameters.prm", parameters);
+      }
+    MPI_Barrier(communicator);
+    wall.restart();
+    history.open(directory);
+    balance.begin_step(0, step_size);
+    if (scene.output.pictures)
+      picture(false);
+    next_picture = scene.output.picture_interval;
+    try
+      {
+        while (time < scene.time.end * (1 - 1e-12) &&
+               report.step < scene.time.largest_number_of_steps)
+          {
+            advance();
+            history.write(report);
+            console.step(report,
+                         scene.time.end,
+                         points.sorted.n_global(),
+                         history.last_figures());
+            const bool last = time >= scene.time.end * (1 - 1e-12);
+            const bool due  = scene.output.picture_interval > 0 ?
+                                time >= next_picture * (1 - 1e-9) :
+                                report.step % scene.output.picture_steps == 0;
+            if (scene.output.pictures && (due || last))
+              {
+                picture(true);
+                next_picture += scene.output.picture_interval;
+              }
+          }
+      }
+    catch (const ComputationError &error)
+      {
+        save_last_good_state(error.what());
+        write_summary(scene_name, error.what());
+        throw;
+      }
+    write_summary(scene_name, "done");
+  }
+
+  template class Simulation<2>;
+  template class Simulation<3>;
+} // namespace impm

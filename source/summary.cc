@@ -1,0 +1,71 @@
+#include <deal.II/base/utilities.h>
+
+#include <impm/pictures.h>
+#include <impm/summary.h>
+#include <impm/version.h>
+
+#include <nlohmann/json.hpp>
+
+#include <cstdio>
+
+namespace impm
+{
+  void
+  RunSummary::write(const std::string &directory,
+                    const MPI_Comm     communicator) const
+  {
+    dealii::Utilities::System::MemoryStats memory;
+    dealii::Utilities::System::get_memory_stats(memory);
+    const auto peak = dealii::Utilities::MPI::sum(memory.VmHWM, communicator);
+    if (dealii::Utilities::MPI::this_mpi_process(communicator) != 0)
+      return;
+
+    nlohmann::ordered_json json;
+    json["scene"]    = scene;
+    json["status"]   = status;
+    json["version"]  = version;
+    json["revision"] = git_revision;
+    json["dim"]      = dim;
+    json["ranks"]    = dealii::Utilities::MPI::n_mpi_processes(communicator);
+    json["points"]   = points;
+    json["bytes_per_point"] = bytes_per_point;
+    json["steps"]           = steps;
+    json["time"]            = time;
+    for (const auto &[name, count] : counts)
+      json[name] = count;
+    for (const auto &[name, figure] : figures)
+      json["figures"][name] = figure;
+    for (const auto &[name, seconds] : phases)
+      json["wall_seconds_by_phase"][name] = seconds;
+    json["peak_memory_kilobytes"] = peak;
+    json["wall_seconds"]          = wall_seconds;
+    json["errors"]                = nlohmann::ordered_json::object();
+    replace_file(directory + "/summary.json", json.dump(2) + "\n");
+  }
+
+  std::string
+  RunSummary::phase_table() const
+  {
+    std::string table;
+    char        line[100];
+    double      known = 0;
+    const auto  add   = [&](const std::string &name, const double seconds) {
+      std::snprintf(line,
+                    sizeof(line),
+                    "  %-24s %9.3f s %5.1f %%\n",
+                    name.c_str(),
+                    seconds,
+                    100 * seconds / wall_seconds);
+      table += line;
+    };
+    for (const auto &[name, seconds] : phases)
+      {
+        add(name, seconds);
+        known += seconds;
+      }
+    add("everything else", wall_seconds - known);
+    add("all", wall_seconds);
+    table.pop_back();
+    return table;
+  }
+} // namespace impm

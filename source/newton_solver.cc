@@ -146,7 +146,15 @@ namespace impm
             if (accept(length))
               break;
             searched = true;
-            length /= 2;
+            // The parabola through what is known has its least value there.
+            double factor = 0.5;
+            if (has_potential && slope < 0 && now.admissible)
+              factor = std::clamp(-slope * length /
+                                    (2 * (now.potential - before -
+                                          slope * length)),
+                                  0.1,
+                                  0.5);
+            length *= factor;
             if (length < shortest)
               {
                 result.line_searches += 1;
@@ -155,6 +163,7 @@ namespace impm
               }
           }
         result.line_searches += searched;
+        result.step_lengths.push_back(length);
         u = trial;
       }
   }

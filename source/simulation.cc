@@ -117,6 +117,14 @@ namespace impm
     report.projections += result.projections;
     report.noise_stops = result.stopped_at_noise;
     report.residual    = result.residuals.empty() ? 0 : result.residuals.back();
+    std::ostringstream iterations;
+    for (unsigned int i = 0; i < result.residuals.size(); ++i)
+      iterations << ' ' << result.residuals[i]
+                 << (i < result.step_lengths.size() &&
+                         result.step_lengths[i] < 1 ?
+                       " /" + std::to_string(1 / result.step_lengths[i]) :
+                       "");
+    console.detail("  residuals:" + iterations.str());
     balance.constraints.interpolate_hanging(u);
     if (result.converged && moves_too_far())
       {

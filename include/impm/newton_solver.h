@@ -25,6 +25,7 @@ namespace impm
       unsigned int        line_searches     = 0; ///< iterations that backed off
       unsigned int        projections       = 0; ///< of an indefinite tangent
       std::vector<double> residuals;             ///< scaled, one an iterate
+      std::vector<double> step_lengths;          ///< after backtracking
       std::string         failure;               ///< why not converged
     };
 

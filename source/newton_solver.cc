@@ -38,11 +38,7 @@ namespace impm
     // guess without it, one linear solve takes it into the body.
     balance.constraints.interpolate_hanging(u);
     if (!evaluate(u).admissible)
-      {
-        u = 0;
-        if (!evaluate(u).admissible)
-          return false;
-      }
+      return false;
     trial = u;
     balance.constraints.set_prescribed(trial);
     trial -= u;
@@ -71,13 +67,18 @@ namespace impm
   typename NewtonSolver<dim>::Result
   NewtonSolver<dim>::solve(Vector &u)
   {
-    Result result;
-    if (!start(u, result))
+    Result       result;
+    const double guess_norm = u.linfty_norm();
+    Evaluation   now;
+    if (start(u, result))
+      now = evaluate(u);
+    if (!now.admissible && guess_norm > 0)
       {
-        result.failure = "no stress at the start of the step";
-        return result;
+        // The guess may be worse than none.
+        u = 0;
+        if (start(u, result))
+          now = evaluate(u);
       }
-    Evaluation now = evaluate(u);
     if (!now.admissible)
       {
         result.failure = "the first guess turns a point inside out";
@@ -149,11 +150,11 @@ namespace impm
             // The parabola through what is known has its least value there.
             double factor = 0.5;
             if (has_potential && slope < 0 && now.admissible)
-              factor = std::clamp(-slope * length /
-                                    (2 * (now.potential - before -
-                                          slope * length)),
-                                  0.1,
-                                  0.5);
+              factor =
+                std::clamp(-slope * length /
+                             (2 * (now.potential - before - slope * length)),
+                           0.1,
+                           0.5);
             length *= factor;
             if (length < shortest)
               {

@@ -309,7 +309,7 @@ namespace impm
                         "strain of one, hence of the order of an error in "
                         "strain.");
       prm.declare_entry("Newton iterations",
-                        "25",
+                        "50",
                         Patterns::Integer(1),
                         "Largest number before the time step is cut.");
       prm.declare_entry("Line search",

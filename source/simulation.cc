@@ -143,9 +143,11 @@ namespace impm
     const auto before = linear_solver.n_fallbacks;
     // The last step ends on time, and none is a sliver.
     const double left = scene.time.end - time;
-    double       dt   = std::min(step_size, left);
+    double       dt   = step_size;
     if (left < 1.001 * dt)
       dt = left;
+    else if (left < 1.999 * dt)
+      dt = left / 2;
     for (;;)
       {
         const auto result = attempt(dt);

@@ -1,0 +1,263 @@
+#include <gtest/gtest.h>
+
+#include "scene_fixture.h"
+
+using namespace dealii;
+using namespace impm;
+
+namespace
+{
+  // Part of the grid only, so that the ghost penalty has faces to work on;
+  // held on the left, where increments are not zero.
+  const Overrides part_of_the_grid = {
+    "Boundary conditions/bottom/Type=slip",
+    "Boundary conditions/left/Type=normal displacement",
+    "Boundary conditions/left/Value=0.004*t*y"};
+
+  Overrides
+  small_block(const unsigned int dim)
+  {
+    const std::string third = dim == 3 ? ", 0.9" : "";
+    return part_of_the_grid +
+           Overrides{"Geometry/box/Upper corner=0.7, 0.6" + third,
+                     "Loads/Body force=0.01*y; -0.02" +
+                       std::string(dim == 3 ? "; 0.01" : "")};
+  }
+
+  // Central difference of fourth order at 0.
+  template <typename Function>
+  auto
+  derivative(const Function &f, const double h)
+  {
+    auto sum = f(h);
+    sum -= f(-h);
+    sum *= 8.;
+    sum -= f(2 * h);
+    sum += f(-2 * h);
+    sum *= 1. / (12 * h);
+    return sum;
+  }
+
+  // Largest deviations, relative.
+  struct Deviations
+  {
+    double residual, tangent, matrix, symmetry, diagonal, lift;
+  };
+
+  template <int dim>
+  Deviations
+  deviations(Model<dim> &model, const Vector &u)
+  {
+    auto        &balance = model.balance;
+    const Vector s = model.random_direction(11), w = model.random_direction(12);
+
+    const auto at = [&](const double h) {
+      Vector x = u;
+      x.add(h, s);
+      const auto result = balance.evaluate(x, false);
+      EXPECT_TRUE(result.admissible);
+      return result.potential;
+    };
+    const auto residual_at = [&](const double h) {
+      at(h);
+      return balance.residual();
+    };
+    const double h          = 2e-6;
+    const double slope      = derivative(at, 1e-4);
+    const Vector difference = derivative(residual_at, h);
+
+    EXPECT_TRUE(balance.evaluate(u).admissible);
+    Deviations   result;
+    const double exact_slope = balance.residual() * s;
+    result.residual          = std::abs(slope / exact_slope - 1);
+
+    Vector s_free = s, w_free = w;
+    balance.constraints.set_zero(s_free);
+    balance.constraints.set_zero(w_free);
+    Vector       Ks = model.vector(), Kw = model.vector();
+    const Vector before = s_free;
+    balance.vmult(Ks, s_free);
+    balance.vmult(Kw, w_free);
+    EXPECT_EQ((Vector(before) -= s_free).l2_norm(), 0.);
+    Vector error = difference;
+    error -= Ks;
+    result.tangent  = error.linfty_norm() / Ks.linfty_norm();
+    result.symmetry = std::abs((w_free * Ks) - (s_free * Kw)) /
+                      (w_free.l2_norm() * Ks.l2_norm());
+
+    // identity on what is constrained
+    Vector mixed = s_free;
+    for (unsigned int i = 0; i < mixed.locally_owned_size(); ++i)
+      if (balance.constraints.is_constrained[i])
+        mixed.local_element(i) = 7;
+    Vector image = model.vector();
+    balance.vmult(image, mixed);
+    for (unsigned int i = 0; i < mixed.locally_owned_size(); ++i)
+      EXPECT_EQ(image.local_element(i),
+                balance.constraints.is_constrained[i] ? 7. :
+                                                        Ks.local_element(i));
+
+    TrilinosWrappers::SparseMatrix matrix;
+    balance.initialize_matrix(matrix);
+    balance.assemble(matrix);
+    Vector product = model.vector();
+    matrix.vmult(product, s_free);
+    balance.constraints.set_zero(product);
+    product -= Ks;
+    result.matrix = product.linfty_norm() / Ks.linfty_norm();
+
+    // A matrix that is filled twice is the same.
+    balance.assemble(matrix);
+    Vector again = model.vector();
+    matrix.vmult(again, s_free);
+    balance.constraints.set_zero(again);
+    again -= Ks;
+    result.matrix =
+      std::max(result.matrix, again.linfty_norm() / Ks.linfty_norm());
+
+    Vector diagonal = model.vector();
+    balance.diagonal(diagonal);
+    double difference_of_diagonals = 0, largest = 0;
+    for (unsigned int i = 0; i < diagonal.locally_owned_size(); ++i)
+      {
+        const auto dof = diagonal.get_partitioner()->local_to_global(i);
+        if (balance.constraints.is_constrained[i])
+          {
+            EXPECT_EQ(diagonal.local_element(i), 1.);
+            continue;
+          }
+        EXPECT_GT(diagonal.local_element(i), 0.);
+        largest                 = std::max(largest, matrix.diag_element(dof));
+        difference_of_diagonals = std::max(difference_of_diagonals,
+                                           std::abs(matrix.diag_element(dof) -
+                                                    diagonal.local_element(i)));
+      }
+    const MPI_Comm comm = model.grid.communicator;
+    result.diagonal = Utilities::MPI::max(difference_of_diagonals, comm) /
+                      Utilities::MPI::max(largest, comm);
+
+    // The lift of prescribed values: the derivative along them.
+    Vector lift = model.random(13, 1.);
+    for (unsigned int i = 0; i < lift.locally_owned_size(); ++i)
+      if (!balance.constraints.is_constrained[i])
+        lift.local_element(i) = 0;
+    balance.constraints.interpolate_hanging(lift);
+    Vector pushed = model.vector();
+    balance.vmult_lift(pushed, lift);
+    error = derivative(
+      [&](const double k) {
+        Vector x = u;
+        x.add(k, lift);
+        EXPECT_TRUE(balance.evaluate(x, false).admissible);
+        return balance.residual();
+      },
+      h);
+    error -= pushed;
+    result.lift = error.linfty_norm() / pushed.linfty_norm();
+    return result;
+  }
+
+  // At the second of two random steps, points anywhere.
+  template <int dim>
+  void
+  check(const std::string &kind, const Overrides &overrides, const double size)
+  {
+    Model<dim> model(block_scene(kind), small_block(dim) + overrides);
+    std::string all = kind;
+    for (const auto &override : overrides)
+      all += ", " + override;
+    SCOPED_TRACE(all);
+    model.scatter_points(1);
+
+    model.begin_step();
+    Vector u = model.random_increment(1, size);
+    ASSERT_TRUE(model.balance.evaluate(u).admissible);
+    model.commit(u);
+
+    model.begin_step();
+    u                    = model.random_increment(2, size);
+    const auto deviation = deviations(model, u);
+    EXPECT_LT(deviation.residual, 1e-8);
+    EXPECT_LT(deviation.tangent, 1e-7);
+    EXPECT_LT(deviation.lift, 1e-7);
+    EXPECT_LT(deviation.matrix, 1e-13);
+    EXPECT_LT(deviation.symmetry, 1e-14);
+    if (model.grid.hanging_nodes.n_constraints() == 0)
+      EXPECT_LT(deviation.diagonal, 1e-13);
+    if (std::getenv("IMPM_TEST_FIGURES") != nullptr)
+      std::cout << all << ": residual " << deviation.residual << ", tangent "
+                << deviation.tangent << ", lift " << deviation.lift
+                << ", matrix " << deviation.matrix << ", symmetry "
+                << deviation.symmetry << ", diagonal " << deviation.diagonal
+                << std::endl;
+  }
+
+  const Overrides trapezoidal = {"Time/Integrator=theta",
+                                 "Time/Theta=0.5",
+                                 "Time/Time step=0.3",
+                                 "Bodies/block/Velocity=0.01*y; 0.02"};
+  const Overrides without_ghost = {"Stabilization/Ghost penalty=0"};
+} // namespace
+
+
+TEST(MomentumBalanceMpi, DerivativesElastic)
+{
+  check<2>("plane strain", {}, 0.03);
+  check<2>("plane strain", refined, 0.015);
+  check<2>("axisymmetric", refined + without_ghost, 0.015);
+  check<3>("3D", {"Grid/Cells=2, 2, 2"}, 0.03);
+}
+
+
+TEST(MomentumBalanceMpi, DerivativesPlastic)
+{
+  for (const std::string kind : {"plane strain", "axisymmetric"})
+    {
+      check<2>(kind, plastic, 0.02);
+      check<2>(kind, plastic + refined, 0.01);
+    }
+  check<3>("3D", plastic + Overrides{"Grid/Cells=2, 3, 2"}, 0.02);
+  check<3>("3D", plastic + refined + Overrides{"Grid/Cells=3, 2, 2"}, 0.01);
+}
+
+
+TEST(MomentumBalanceMpi, DerivativesWithInertia)
+{
+  const Overrides in_space = {"Grid/Cells=2, 2, 2",
+                              "Bodies/block/Velocity=0.01*y; 0.02; -0.01*x"};
+  check<2>("plane strain", trapezoidal + plastic, 0.02);
+  check<2>("axisymmetric", trapezoidal + refined, 0.01);
+  check<3>("3D", trapezoidal + plastic + refined + in_space, 0.01);
+}
+
+
+// The ghost penalty counts on a face as often as it should: for a field with a
+// kink over one face its energy is known.
+TEST(MomentumBalanceMpi, GhostPenaltyOfAKink)
+{
+  for (const bool fine_in_part : {false, true})
+    {
+      // Points in the columns of cells left of x = 0.5; u = k (x - 0.25)^+.
+      Overrides overrides = {"Geometry/box/Upper corner=0.5, 1"};
+      if (fine_in_part)
+        overrides = overrides + Overrides{"Grid/Local refinements=1",
+                                          "Grid/Refine where=0.2 - x"};
+      Model<2> model(block_scene("plane strain"), overrides);
+      model.begin_step();
+      const double k = 1e-4;
+      Vector       u = model.vector();
+      for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
+        if (i % 2 == 1)
+          u.local_element(i) =
+            k * std::max(0., model.grid.node_positions()[i / 2][0] - 0.25);
+      model.balance.constraints.interpolate_hanging(u);
+      GhostPenalty<2> ghost;
+      ghost.build(model.balance.footprints(), model.points, model.grid, 0.03);
+      // gamma E h (jump)^2 / 2 on a face of length 1; h of the finer side
+      const double h = fine_in_part ? 0.125 : 0.25;
+      EXPECT_NEAR(Utilities::MPI::sum(ghost.energy(u), MPI_COMM_WORLD) /
+                    (0.5 * 0.03 * h * k * k),
+                  1.,
+                  1e-11);
+    }
+}

@@ -3,8 +3,7 @@
 #include <deal.II/fe/fe_q.h>
 #include <deal.II/fe/fe_values.h>
 
-#include <deal.II/grid/grid_tools.h>
-
+#include <impm/cell_neighbors.h>
 #include <impm/ghost_penalty.h>
 
 namespace impm
@@ -15,39 +14,6 @@ namespace impm
   {
     template <int dim>
     using CellIterator = typename BackgroundGrid<dim>::CellIterator;
-
-    /** Fills the ghost cells of data by active cell index. Collective. */
-    template <int dim>
-    void
-    exchange(const BackgroundGrid<dim> &grid, std::vector<double> &cell_data)
-    {
-      GridTools::exchange_cell_data_to_ghosts<double>(
-        grid.dof_handler,
-        [&](const CellIterator<dim> &cell) {
-          return cell_data[cell->active_cell_index()];
-        },
-        [&](const CellIterator<dim> &cell, const double value) {
-          cell_data[cell->active_cell_index()] = value;
-        });
-    }
-
-    /** Calls `action` with every active neighbour of a cell. */
-    template <int dim, typename Action>
-    void
-    for_each_neighbor(const CellIterator<dim> &cell, const Action &action)
-    {
-      for (const unsigned int f : cell->face_indices())
-        if (!cell->at_boundary(f))
-          {
-            const auto neighbor = cell->neighbor(f);
-            if (!neighbor->has_children())
-              action(CellIterator<dim>(neighbor));
-            else
-              for (unsigned int s = 0; s < cell->face(f)->n_children(); ++s)
-                action(
-                  CellIterator<dim>(cell->neighbor_child_on_subface(f, s)));
-          }
-    }
 
     /** Whether this rank, coming from this cell, works on the face. */
     template <int dim>
@@ -86,7 +52,7 @@ namespace impm
                               points.material(footprints.point[e]).stiffness());
         stiffness[cell.cell->active_cell_index()] = smallest;
       }
-    exchange(grid, stiffness);
+    exchange_cell_data(grid, stiffness);
 
     std::vector<double> at_edge(stiffness.size());
     for (const auto &cell : footprints.cells)
@@ -94,7 +60,7 @@ namespace impm
         if (stiffness[neighbor->active_cell_index()] == 0)
           at_edge[cell.cell->active_cell_index()] = 1;
       });
-    exchange(grid, at_edge);
+    exchange_cell_data(grid, at_edge);
 
     const FE_Q<dim>       fe(1);
     const QGauss<dim - 1> quadrature(2);

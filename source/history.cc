@@ -125,8 +125,9 @@ namespace impm
       file << ',' << probe.name;
     for (const auto &reaction : scene.output.reactions)
       file << ',' << reaction.name;
-    file << ",residual,tangent_projections,solver_fallbacks,noise_stops"
-         << std::endl;
+    file
+      << ",residual,tangent_projections,solver_fallbacks,noise_stops,held_cells"
+      << std::endl;
     if (!file)
       throw SystemError("cannot write '" + directory + "/history.csv'");
   }
@@ -244,7 +245,8 @@ namespace impm
     for (const auto &figure : figures)
       file << ',' << figure.second;
     file << ',' << report.residual << ',' << report.projections << ','
-         << report.solver_fallbacks << ',' << report.noise_stops << std::endl;
+         << report.solver_fallbacks << ',' << report.noise_stops << ','
+         << report.held_cells << std::endl;
     if (!file)
       throw SystemError("cannot write the history (disk full?)");
   }

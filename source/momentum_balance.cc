@@ -1,4 +1,5 @@
 #include <impm/exceptions.h>
+#include <impm/isolated_cells.h>
 #include <impm/momentum_balance.h>
 
 #include <cmath>
@@ -117,6 +118,7 @@ namespace impm
   {
     for (Vector *vector : {&mass,
                            &velocity,
+                           &holding,
                            &known_acceleration,
                            &load,
                            &start_forces,
@@ -167,6 +169,7 @@ namespace impm
     smallest_extent = grid.smallest_cell_extent();
     ghost.build(prints, points, grid, scene.stabilization.ghost_penalty);
     gather_load();
+    hold_isolated_cells();
     if (integrator.has_inertia())
       gather_inertia();
     if (integrator.force_factor() < 1)
@@ -321,6 +324,36 @@ namespace impm
 
   template <int dim>
   void
+  MomentumBalance<dim>::hold_isolated_cells()
+  {
+    n_held_cells        = 0;
+    holding             = 0;
+    const double factor = scene.stabilization.isolated_stiffness;
+    if (integrator.has_inertia() || factor == 0)
+      return;
+    const auto isolated =
+      find_isolated_cells(prints, grid, constraints, axisymmetric);
+    for (unsigned int k = 0; k < prints.cells.size(); ++k)
+      if (isolated[k])
+        {
+          const auto &cell = prints.cells[k];
+          ++n_held_cells;
+          double stiffness = 0;
+          for (unsigned int e = cell.begin; e < cell.end; ++e)
+            stiffness += factor * points.initial_volume(prints.point[e]) *
+                         points.material(prints.point[e]).stiffness() /
+                         (cell.extent * cell.extent);
+          for (const unsigned int node : cell.nodes)
+            for (unsigned int c = 0; c < dim; ++c)
+              holding.local_element(dim * node + c) += stiffness;
+        }
+    holding.compress(VectorOperation::add);
+    constraints.condense_hanging(holding);
+    n_held_cells = Utilities::MPI::sum(n_held_cells, grid.communicator);
+  }
+
+  template <int dim>
+  void
   MomentumBalance<dim>::gather_load()
   {
     load = 0;
@@ -369,6 +402,13 @@ namespace impm
     if (factor < 1)
       forces.sadd(factor, 1 - factor, start_forces);
     potential *= factor;
+    if (n_held_cells > 0)
+      for (unsigned int i = 0; i < forces.locally_owned_size(); ++i)
+        {
+          const double force = holding.local_element(i) * u.local_element(i);
+          forces.local_element(i) += force;
+          potential += 0.5 * force * u.local_element(i);
+        }
     double inertia_norm = 0;
     if (integrator.has_inertia())
       for (unsigned int i = 0; i < forces.locally_owned_size(); ++i)

@@ -138,9 +138,12 @@ namespace impm
   void
   Simulation<dim>::advance()
   {
-    report = StepReport{
-      report.step + 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, report.external_work, 0};
-    const auto before = linear_solver.n_fallbacks;
+    const double work    = report.external_work;
+    const auto   step    = report.step + 1;
+    report               = StepReport();
+    report.step          = step;
+    report.external_work = work;
+    const auto before    = linear_solver.n_fallbacks;
     // The last step ends on time, and none is a sliver.
     const double left = scene.time.end - time;
     double       dt   = step_size;
@@ -167,20 +170,21 @@ namespace impm
           }
       }
     report.solver_fallbacks = linear_solver.n_fallbacks - before;
+    report.held_cells       = balance.n_held_cells;
     report.external_work += external_work_of_step();
     history.take_reactions();
     commit();
     report.time         = time;
     report.wall_seconds = wall.wall_time();
 
-    // After a cut the step grows back.
-    const double recovery = report.step_cuts > 0 ? 1. : 1.5;
-    step_size             = dt >= step_size * 0.999 ?
-                              std::min(dt * scene.time.growth, scene.time.largest_step) :
-                            report.step_cuts > 0 ? dt * recovery :
-                                                   step_size;
-    if (step_size < scene.time.step)
+    // Grow; after a cut, back to the nominal step first.
+    if (report.step_cuts > 0)
+      step_size = dt;
+    else if (step_size < scene.time.step)
       step_size = std::min(1.5 * step_size, scene.time.step);
+    else
+      step_size =
+        std::min(step_size * scene.time.growth, scene.time.largest_step);
 
     sums.newton += report.newton_iterations;
     sums.linear += report.linear_iterations;

@@ -63,13 +63,9 @@ namespace impm
     dst.compress(VectorOperation::add);
     constraints.condense_hanging(dst);
     const double force = integrator.force_factor();
-    const double inertia =
-      integrator.has_inertia() ? integrator.mass_factor(dt) : 0.;
     for (unsigned int i = 0; i < dst.locally_owned_size(); ++i)
-      dst.local_element(i) =
-        force * dst.local_element(i) +
-        (inertia > 0 ? inertia * mass.local_element(i) * src.local_element(i) :
-                       0.);
+      dst.local_element(i) = force * dst.local_element(i) +
+                             diagonal_stiffness(i) * src.local_element(i);
   }
 
   template <int dim>
@@ -165,9 +161,8 @@ namespace impm
     for (unsigned int i = 0; i < diagonal.locally_owned_size(); ++i)
       if (constraints.is_constrained[i])
         diagonal.local_element(i) = 1;
-      else if (integrator.has_inertia())
-        diagonal.local_element(i) +=
-          integrator.mass_factor(dt) * mass.local_element(i);
+      else
+        diagonal.local_element(i) += diagonal_stiffness(i);
   }
 
   namespace
@@ -251,10 +246,8 @@ namespace impm
     for (unsigned int i = 0; i < mass.locally_owned_size(); ++i)
       {
         const auto dof = partitioner.local_to_global(i);
-        if (!constraints.is_constrained[i] && integrator.has_inertia())
-          matrix.add(dof,
-                     dof,
-                     integrator.mass_factor(dt) * mass.local_element(i));
+        if (!constraints.is_constrained[i] && diagonal_stiffness(i) > 0)
+          matrix.add(dof, dof, diagonal_stiffness(i));
         else if (constraints.is_constrained[i] && matrix.diag_element(dof) == 0)
           matrix.add(dof, dof, largest);
       }

@@ -139,6 +139,7 @@ namespace impm
 
     Vector                mass;          ///< lumped (kg), ready at begin_step
     Vector                velocity;      ///< at the start (m/s), if inertia
+    unsigned int          n_held_cells;  ///< isolated ones
     unsigned int          n_active_dofs; ///< neither constrained nor unused
     unsigned long         n_stress_evaluations = 0; ///< of this rank, all steps
     mutable unsigned long n_operator_applications = 0;
@@ -162,6 +163,19 @@ namespace impm
     gather_load();
 
     void
+    hold_isolated_cells();
+
+    /** Inertia and holding stiffness of a local element (N/m). */
+    double
+    diagonal_stiffness(const unsigned int i) const
+    {
+      return holding.local_element(i) +
+             (integrator.has_inertia() ?
+                integrator.mass_factor(dt) * mass.local_element(i) :
+                0.);
+    }
+
+    void
     apply_tangent(Vector &dst, const Vector &src) const;
 
     void
@@ -178,6 +192,7 @@ namespace impm
 
     Footprints<dim>   prints;
     GhostPenalty<dim> ghost;
+    Vector            holding;            ///< stiffness of isolated cells (N/m)
     Vector            known_acceleration; ///< (m/s^2)
     Vector            load;               ///< minus the external forces (N)
     Vector            start_forces; ///< f(0) (N), if the integrator weighs it

@@ -63,6 +63,13 @@ namespace impm
 
     dealii::AffineConstraints<double> constraints;
 
+    /** Whether a face or rigid body holds a local element. */
+    bool
+    is_prescribed(const unsigned int index) const
+    {
+      return carriers.local_element(index) > 0;
+    }
+
     /** Whether a local element is constrained. */
     std::vector<char> is_constrained;
 

@@ -7,6 +7,8 @@ using namespace impm;
 
 namespace
 {
+  using impm::Vector;
+
   // Part of the grid only, so that the ghost penalty has faces to work on;
   // held on the left, where increments are not zero.
   const Overrides part_of_the_grid = {
@@ -133,7 +135,7 @@ namespace
                                                     diagonal.local_element(i)));
       }
     const MPI_Comm comm = model.grid.communicator;
-    result.diagonal = Utilities::MPI::max(difference_of_diagonals, comm) /
+    result.diagonal     = Utilities::MPI::max(difference_of_diagonals, comm) /
                       Utilities::MPI::max(largest, comm);
 
     // The lift of prescribed values: the derivative along them.
@@ -162,7 +164,7 @@ namespace
   void
   check(const std::string &kind, const Overrides &overrides, const double size)
   {
-    Model<dim> model(block_scene(kind), small_block(dim) + overrides);
+    Model<dim>  model(block_scene(kind), small_block(dim) + overrides);
     std::string all = kind;
     for (const auto &override : overrides)
       all += ", " + override;
@@ -192,10 +194,10 @@ namespace
                 << std::endl;
   }
 
-  const Overrides trapezoidal = {"Time/Integrator=theta",
-                                 "Time/Theta=0.5",
-                                 "Time/Time step=0.3",
-                                 "Bodies/block/Velocity=0.01*y; 0.02"};
+  const Overrides trapezoidal   = {"Time/Integrator=theta",
+                                   "Time/Theta=0.5",
+                                   "Time/Time step=0.3",
+                                   "Bodies/block/Velocity=0.01*y; 0.02"};
   const Overrides without_ghost = {"Stabilization/Ghost penalty=0"};
 } // namespace
 
@@ -245,7 +247,7 @@ TEST(MomentumBalanceMpi, GhostPenaltyOfAKink)
       Model<2> model(block_scene("plane strain"), overrides);
       model.begin_step();
       const double k = 1e-4;
-      Vector       u = model.vector();
+      auto         u = model.vector();
       for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
         if (i % 2 == 1)
           u.local_element(i) =

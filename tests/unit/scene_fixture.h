@@ -33,8 +33,8 @@ namespace impm
     TemporaryFile(const std::string &text, const std::string &extension)
     {
       static unsigned int count = 0;
-      name                      = "/tmp/impm_test_" + std::to_string(getpid()) +
-             "_" + std::to_string(count++) + extension;
+      name = "/tmp/impm_test_" + std::to_string(getpid()) + "_" +
+             std::to_string(count++) + extension;
       std::ofstream(name) << text;
     }
 
@@ -115,10 +115,9 @@ namespace impm
            "end\n";
   }
 
-  inline const Overrides plastic = {
-    "Materials/rubber/Law=log-strain von Mises",
-    "Materials/rubber/Yield stress=0.02",
-    "Materials/rubber/Hardening modulus=0.1"};
+  inline const Overrides plastic = {"Materials/rubber/Law=log-strain von Mises",
+                                    "Materials/rubber/Yield stress=0.02",
+                                    "Materials/rubber/Hardening modulus=0.1"};
 
   /** The cells on the left are split: hanging nodes inside. */
   inline const Overrides refined = {"Grid/Local refinements=1",
@@ -177,8 +176,8 @@ namespace impm
       Vector v = vector();
       for (unsigned int i = 0; i < v.locally_owned_size(); ++i)
         {
-          std::mt19937 generator(
-            1000 * seed + v.get_partitioner()->local_to_global(i));
+          std::mt19937 generator(1000 * seed +
+                                 v.get_partitioner()->local_to_global(i));
           v.local_element(i) =
             std::uniform_real_distribution<double>(-size, size)(generator);
         }
@@ -238,10 +237,10 @@ namespace impm
         const auto         cell = particle.get_surrounding_cell();
         dealii::Point<dim> x;
         for (unsigned int d = 0; d < dim; ++d)
-          x[d] = cell->vertex(0)[d] +
-                 cell->extent_in_direction(d) *
-                   std::uniform_real_distribution<double>(0.01,
-                                                          0.99)(generator);
+          x[d] =
+            cell->vertex(0)[d] +
+            cell->extent_in_direction(d) *
+              std::uniform_real_distribution<double>(0.01, 0.99)(generator);
         return x;
       });
     }

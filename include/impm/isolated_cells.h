@@ -1,0 +1,24 @@
+#ifndef impm_isolated_cells_h
+#define impm_isolated_cells_h
+
+#include <impm/footprints.h>
+#include <impm/step_constraints.h>
+
+#include <vector>
+
+namespace impm
+{
+  /**
+   * Pieces of material that share no face with any other and that nothing
+   * holds in some direction: without inertia they could fly. Returns, for
+   * every cell of the footprints, whether it belongs to one. Collective.
+   */
+  template <int dim>
+  std::vector<char>
+  find_isolated_cells(const Footprints<dim>      &footprints,
+                      const BackgroundGrid<dim>  &grid,
+                      const StepConstraints<dim> &constraints,
+                      bool                        axisymmetric);
+} // namespace impm
+
+#endif

@@ -1,0 +1,149 @@
+#include <impm/history.h>
+
+#include <gtest/gtest.h>
+
+#include "scene_fixture.h"
+
+using namespace dealii;
+using namespace impm;
+
+namespace
+{
+  using impm::Vector;
+
+  // A body in the middle of the grid that flies, turns and is stretched.
+  const Overrides flying = {"Geometry/box/Lower corner=0.3, 0.4",
+                            "Geometry/box/Upper corner=0.7, 0.75",
+                            "Grid/Cells=8, 8",
+                            "Time/Integrator=theta",
+                            "Time/Time step=0.05",
+                            "Bodies/block/Velocity=0.3 + 0.4*x - y; x*y - 0.2"};
+
+  template <int dim>
+  Tensor<1, dim>
+  momentum_of_grid(const Model<dim> &model)
+  {
+    Tensor<1, dim> sum;
+    const auto    &balance = model.balance;
+    for (unsigned int i = 0; i < balance.mass.locally_owned_size(); ++i)
+      sum[i % dim] +=
+        balance.mass.local_element(i) * balance.velocity.local_element(i);
+    return Utilities::MPI::sum(sum, MPI_COMM_WORLD);
+  }
+
+  template <int dim>
+  double
+  mass_of_grid(const Model<dim> &model)
+  {
+    double sum = 0;
+    for (unsigned int i = 0; i < model.balance.mass.locally_owned_size(); ++i)
+      sum += model.balance.mass.local_element(i);
+    return Utilities::MPI::sum(sum, MPI_COMM_WORLD) / dim;
+  }
+
+  template <int dim>
+  void
+  check_gather(const std::string &kind, const Overrides &overrides)
+  {
+    SCOPED_TRACE(kind);
+    Model<dim> model(block_scene(kind), flying + overrides);
+    ASSERT_GT(model.grid.triangulation.n_global_active_cells(), 0u);
+    model.scatter_points(1);
+    model.begin_step();
+    const auto totals = total(model.points);
+    EXPECT_NEAR(mass_of_grid(model) / totals.mass, 1., 1e-14);
+    const auto difference = momentum_of_grid(model) - totals.momentum;
+    EXPECT_LT(difference.norm(), 1e-14 * totals.momentum.norm());
+    // nothing at hanging nodes
+    for (unsigned int i = 0; i < model.balance.mass.locally_owned_size(); ++i)
+      if (model.grid.hanging_nodes.is_constrained(
+            model.balance.mass.get_partitioner()->local_to_global(i)))
+        EXPECT_EQ(model.balance.mass.local_element(i), 0.);
+  }
+
+  template <int dim>
+  void
+  fly(const std::string &kind, const Overrides &overrides)
+  {
+    std::string all = kind;
+    for (const auto &override : overrides)
+      all += ", " + override;
+    SCOPED_TRACE(all);
+    Model<dim>   model(block_scene(kind), flying + overrides);
+    const auto   start = total(model.points);
+    Vector       u;
+    double       largest = 0;
+    const double E       = 1;
+    for (unsigned int step = 0; step < 6; ++step)
+      {
+        const auto result = model.solve(u);
+        ASSERT_TRUE(result.converged) << result.failure;
+        model.commit(u);
+        const auto now        = total(model.points);
+        auto       difference = now.momentum - start.momentum;
+        if (kind == "axisymmetric")
+          difference[0] = 0;
+        largest = std::max(largest, difference.norm());
+        EXPECT_EQ(now.mass, start.mass);
+      }
+    // Momentum is as exact as the forces: the scale of these is E times area.
+    EXPECT_LT(largest, 1e-12 * E);
+    const auto end = total(model.points);
+    EXPECT_GT(end.strain_energy + end.plastic_work, 1e-6);
+    EXPECT_LT(end.strain_energy + end.plastic_work + end.kinetic_energy,
+              start.kinetic_energy * (1 + 1e-12));
+    if (std::getenv("IMPM_TEST_FIGURES") != nullptr)
+      std::cout << all << ": momentum " << largest << " of "
+                << start.momentum.norm() << ", energy " << start.kinetic_energy
+                << " -> " << end.kinetic_energy << " + " << end.strain_energy
+                << " + " << end.plastic_work << std::endl;
+  }
+
+  const Overrides space        = {"Geometry/box/Lower corner=0.3, 0.4, 0.4",
+                                  "Geometry/box/Upper corner=0.7, 0.75, 0.7",
+                                  "Grid/Cells=4, 4, 4",
+                                  "Bodies/block/Velocity=0.3 - y; x*z - 0.2; 0.4*x"};
+  const Overrides half_refined = {"Grid/Local refinements=1",
+                                  "Grid/Refine where=0.5 - x"};
+} // namespace
+
+
+TEST(ConservationMpi, GridHasMassAndMomentumOfThePoints)
+{
+  check_gather<2>("plane strain", {});
+  check_gather<2>("plane strain", half_refined);
+  check_gather<2>("axisymmetric", half_refined);
+  check_gather<3>("3D", space + half_refined);
+}
+
+
+TEST(ConservationMpi, FreeFlightKeepsMomentum)
+{
+  fly<2>("plane strain", {"Time/Theta=1"});
+  fly<2>("plane strain", {"Time/Theta=0.5"});
+  fly<2>("plane strain", half_refined + plastic);
+  fly<2>("axisymmetric", half_refined);
+  fly<3>("3D", space + half_refined);
+}
+
+
+// A block of one velocity just flies: no force, whatever grid it crosses.
+TEST(ConservationMpi, UniformVelocityStaysUniform)
+{
+  Model<2> model(block_scene("plane strain"),
+                 flying + half_refined +
+                   Overrides{"Bodies/block/Velocity=0.7; -0.3"});
+  auto     u = model.vector();
+  for (unsigned int step = 0; step < 6; ++step)
+    {
+      ASSERT_TRUE(model.solve(u).converged);
+      model.commit(u);
+    }
+  for (unsigned int p = 0; p < model.points.size(); ++p)
+    {
+      const double *fields = model.points.fields(p);
+      EXPECT_NEAR(fields[model.points.offset_velocity], 0.7, 1e-12);
+      EXPECT_NEAR(fields[model.points.offset_velocity + 1], -0.3, 1e-12);
+    }
+  EXPECT_NEAR(total(model.points).strain_energy, 0., 1e-24);
+}

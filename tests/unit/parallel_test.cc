@@ -1,0 +1,229 @@
+#include <impm/simulation.h>
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <map>
+#include <sstream>
+
+#include "scene_fixture.h"
+
+using namespace dealii;
+using namespace impm;
+
+namespace
+{
+  using Columns = std::map<std::string, std::vector<double>>;
+
+  Columns
+  read_history(const std::string &directory)
+  {
+    std::ifstream            file(directory + "/history.csv");
+    std::string              line, field;
+    std::vector<std::string> names;
+    Columns                  columns;
+    std::getline(file, line);
+    std::istringstream header(line);
+    while (std::getline(header, field, ','))
+      names.push_back(field);
+    while (std::getline(file, line))
+      {
+        std::istringstream row(line);
+        for (const auto &name : names)
+          if (std::getline(row, field, ','))
+            columns[name].push_back(std::stod(field));
+      }
+    return columns;
+  }
+
+  template <int dim>
+  Columns
+  run(const Scene<dim>  &scene,
+      const MPI_Comm     communicator,
+      const std::string &directory)
+  {
+    Simulation<dim> simulation(scene,
+                               CommandLine::Verbosity::quiet,
+                               communicator);
+    simulation.run(directory, "test", "");
+    MPI_Barrier(MPI_COMM_WORLD);
+    const auto columns = read_history(directory);
+    MPI_Barrier(MPI_COMM_WORLD);
+    std::error_code ignored;
+    std::filesystem::remove_all(directory, ignored);
+    MPI_Barrier(MPI_COMM_WORLD);
+    return columns;
+  }
+
+  // The scene alone on each rank, then on all of them together.
+  template <int dim>
+  void
+  compare(const std::string &text, const Overrides &overrides)
+  {
+    std::string all;
+    for (const auto &override : overrides)
+      all += override + ", ";
+    SCOPED_TRACE(all);
+    const auto scene = scene_from<dim>(text, overrides);
+    const auto id =
+      Utilities::MPI::broadcast(MPI_COMM_WORLD, static_cast<int>(getpid()));
+    const auto rank = Utilities::MPI::this_mpi_process(MPI_COMM_WORLD);
+    const auto path = "/tmp/impm_test_run_" + std::to_string(id);
+    const auto alone =
+      run(scene, MPI_COMM_SELF, path + "_" + std::to_string(rank));
+    const auto together = run(scene, MPI_COMM_WORLD, path);
+
+    ASSERT_EQ(alone.at("step").size(), 5u);
+    double      worst = 0;
+    std::string where;
+    for (const auto &[name, values] : alone)
+      {
+        if (name == "wall_seconds" || name == "residual" ||
+            name.find("iterations") != std::string::npos)
+          continue;
+        const auto &others = together.at(name);
+        ASSERT_EQ(others.size(), values.size());
+        double largest = 0, error = 0;
+        for (unsigned int i = 0; i < values.size(); ++i)
+          {
+            largest = std::max(largest, std::abs(values[i]));
+            error   = std::max(error, std::abs(values[i] - others[i]));
+          }
+        // Momentum across the axis is round-off.
+        if (largest > 1e-12)
+          {
+            EXPECT_LT(error / largest, 1e-7) << name;
+            if (error / largest > worst)
+              {
+                worst = error / largest;
+                where = name;
+              }
+          }
+      }
+    EXPECT_GT(alone.at("plastic_work").back(), 0.);
+    EXPECT_GT(alone.at("load").back(), 0.);
+    if (std::getenv("IMPM_TEST_FIGURES") != nullptr)
+      std::cout << all << ": " << worst << " (" << where << "), load "
+                << alone.at("load").back() << ", radius "
+                << alone.at("radius").back() << std::endl;
+  }
+
+  // The upsetting of prm/upsetting.prm on a coarse grid, in units of 10 mm,
+  // 10 GPa and the density; a third of its height in 5 steps.
+  std::string
+  upsetting()
+  {
+    return "subsection Geometry\n"
+           "  set Kind   = axisymmetric\n"
+           "  set Shapes = cylinder\n"
+           "  subsection cylinder\n"
+           "    set Lower corner = 0, 0\n"
+           "    set Upper corner = 1, 1.5\n"
+           "  end\n"
+           "end\n"
+           "subsection Grid\n"
+           "  set Lower corner = 0, 0\n"
+           "  set Upper corner = 2, 1.5\n"
+           "  set Cells        = 8, 6\n"
+           "end\n"
+           "subsection Materials\n"
+           "  set Names = steel\n"
+           "  subsection steel\n"
+           "    set Law               = log-strain von Mises\n"
+           "    set Density           = 1\n"
+           "    set Young's modulus   = 20\n"
+           "    set Poisson's ratio   = 0.3\n"
+           "    set Yield stress      = 0.07\n"
+           "    set Hardening modulus = 0.03\n"
+           "  end\n"
+           "end\n"
+           "subsection Bodies\n"
+           "  set Names = billet\n"
+           "  subsection billet\n"
+           "    set Shape    = cylinder\n"
+           "    set Material = steel\n"
+           "  end\n"
+           "end\n"
+           "subsection Boundary conditions\n"
+           "  subsection left\n"
+           "    set Type = slip\n"
+           "  end\n"
+           "  subsection bottom\n"
+           "    set Type = slip\n"
+           "  end\n"
+           "end\n"
+           "subsection Time\n"
+           "  set Integrator = theta\n"
+           "  set End time   = 5\n"
+           "  set Time step  = 1\n"
+           "end\n"
+           "subsection Solver\n"
+           "  set Newton tolerance = 1e-11\n"
+           "  set Linear solver    = direct\n"
+           "end\n"
+           "subsection Output\n"
+           "  set Pictures  = false\n"
+           "  set Probes    = radius, moved\n"
+           "  set Reactions = load\n"
+           "  subsection radius\n"
+           "    set Kind = extent\n"
+           "  end\n"
+           "  subsection moved\n"
+           "    set Position  = 0.99, 1.48\n"
+           "    set Component = 0\n"
+           "  end\n"
+           "  subsection load\n"
+           "    set Direction = 0, 1\n"
+           "  end\n"
+           "end\n";
+  }
+
+  const Overrides platen_is_a_face = {
+    "Boundary conditions/top/Type=velocity",
+    "Boundary conditions/top/Value=0; -0.05",
+    "Boundary conditions/top/Moves the grid=true",
+    "Output/load/On=top"};
+
+  const Overrides platen_is_a_body = {"Geometry/Shapes=cylinder, plate",
+                                      "Geometry/plate/Lower corner=0, 1.5",
+                                      "Geometry/plate/Upper corner=2, 1.75",
+                                      "Grid/Upper corner=2, 2",
+                                      "Grid/Cells=8, 8",
+                                      "Bodies/Names=billet, platen",
+                                      "Bodies/platen/Kind=rigid",
+                                      "Bodies/platen/Shape=plate",
+                                      "Bodies/platen/Displacement=0; -0.05*t",
+                                      "Output/load/On=platen"};
+
+  const Overrides split = {"Grid/Local refinements=1",
+                           "Grid/Refine where=0.8 - x + 0.3*y"};
+} // namespace
+
+
+TEST(ParallelMpi, GridFollowsThePlaten)
+{
+  compare<2>(upsetting(), platen_is_a_face);
+}
+
+
+TEST(ParallelMpi, LocallyRefinedGrid)
+{
+  compare<2>(upsetting(), platen_is_a_face + split);
+}
+
+
+TEST(ParallelMpi, PlatenOfPoints)
+{
+  compare<2>(upsetting(), platen_is_a_body);
+  compare<2>(upsetting(), platen_is_a_body + split);
+}
+
+
+TEST(ParallelMpi, QuasiStaticWithAMG)
+{
+  compare<2>(upsetting(),
+             platen_is_a_face + split +
+               Overrides{"Time/Integrator=quasi-static",
+                         "Solver/Linear solver=CG",
+                         "Solver/Linear tolerance=1e-6"});
+}

@@ -21,6 +21,8 @@ namespace
   {
     const std::string third = dim == 3 ? ", 0.9" : "";
     return part_of_the_grid +
+           (dim == 3 ? Overrides{"Boundary conditions/back/Type=slip"} :
+                       Overrides{}) +
            Overrides{"Geometry/box/Upper corner=0.7, 0.6" + third,
                      "Loads/Body force=0.01*y; -0.02" +
                        std::string(dim == 3 ? "; 0.01" : "")};

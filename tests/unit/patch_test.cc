@@ -186,10 +186,15 @@ namespace
     for (const auto &override : overrides)
       all += ", " + override;
     SCOPED_TRACE(all);
-    const std::string third = dim == 3 ? ", 0.9" : "";
+    const std::string third = dim == 3 ? ", 0.3" : "";
     Model<dim>        model(block_scene(kind),
                      overrides +
-                       Overrides{"Geometry/box/Upper corner=0.7, 0.6" + third});
+                       Overrides{"Geometry/box/Lower corner=0.3, 0.3" + third,
+                                 "Geometry/box/Upper corner=0.7, 0.6" +
+                                   std::string(dim == 3 ? ", 0.7" : ""),
+                                 "Grid/Cells=8, 8" +
+                                   std::string(dim == 3 ? ", 8" : ""),
+                                 "Stabilization/Isolated stiffness=0"});
     auto             &balance = model.balance;
     model.scatter_points(7);
     if (stressed)
@@ -200,7 +205,7 @@ namespace
             squeeze[i][j] = 0.04 * std::cos(1. + 3 * i + 4 * j);
         Point<dim> centre;
         for (unsigned int d = 0; d < dim; ++d)
-          centre[d] = 0.3;
+          centre[d] = 0.5;
         model.begin_step();
         Vector       u = model.linear_field(squeeze, centre);
         const Vector r = model.random(3, 0.003);
@@ -248,7 +253,7 @@ namespace
     GhostPenalty<dim> ghost;
     ghost.build(balance.footprints(), model.points, model.grid, 0.03);
     EXPECT_GT(Utilities::MPI::sum(ghost.faces.size(), MPI_COMM_WORLD), 0u);
-    EXPECT_NEAR(ghost.energy(u), 0., 1e-28);
+    EXPECT_NEAR(ghost.energy(u), 0., 1e-16);
 
     // No stress, or the old one turned.
     const auto field = make_point_field<dim>("cauchy_stress", model.points);
@@ -330,7 +335,7 @@ TEST(PatchMpi, LinearFieldsHaveTheirGradient)
     GhostPenalty<std::decay_t<decltype(gradient)>::dimension> ghost;
     ghost.build(balance.footprints(), model.points, model.grid, 1.);
     EXPECT_GT(Utilities::MPI::sum(ghost.faces.size(), MPI_COMM_WORLD), 0u);
-    EXPECT_NEAR(ghost.energy(u), 0., 1e-28);
+    EXPECT_NEAR(ghost.energy(u), 0., 1e-16);
   };
   Model<2> plane(block_scene("plane strain"),
                  refined + Overrides{"Geometry/box/Upper corner=0.7, 0.6"});
@@ -386,11 +391,10 @@ TEST(PatchMpi, UniaxialTension)
                                          up);
     EXPECT_NEAR(load / (volume * (0.02 + 0.1 * alpha) / 1.2), 1., 1e-10);
 
-    model.commit(u);
     const unsigned int offset =
-      model.points.layout.offset("equivalent_plastic_strain");
+      model.points.history_layout.offset("equivalent_plastic_strain");
     for (unsigned int p = 0; p < model.points.size(); ++p)
-      EXPECT_NEAR(model.points.fields(p)[offset], alpha, 1e-10);
+      EXPECT_NEAR(model.balance.trial_history(p)[offset], alpha, 1e-10);
   };
   const Overrides tension = {"Boundary conditions/left/Type=slip",
                              "Boundary conditions/bottom/Type=slip",

@@ -1,0 +1,76 @@
+#!/usr/bin/python3
+"""Runs the upsetting on grids of 1, 0.5 and 0.25 mm and prints, as Markdown,
+load and radius at 15, 30, 45 and 60 % beside what they cost.
+
+usage: contrib/upsetting_table.py [NAME OF A SCENE [CELLS IN r AND z AT 1 mm]]
+
+    contrib/upsetting_table.py upsetting 24 15
+    contrib/upsetting_table.py upsetting_rigid_points 24 18
+"""
+
+import csv
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+root = Path(__file__).resolve().parent.parent
+marks = {"15 %": 0.00225, "30 %": 0.0045, "45 %": 0.00675, "60 %": 0.009}
+
+
+def interpolate(rows, column, travel):
+    """Linear in the travel of the platen; the last row if it is the end."""
+    before = None
+    for row in rows:
+        here = float(row["platen_displacement"]), float(row[column])
+        if here[0] >= travel * (1 - 1e-9):
+            if before is None:
+                return here[1]
+            share = (travel - before[0]) / (here[0] - before[0])
+            return before[1] + share * (here[1] - before[1])
+        before = here
+    return float("nan")
+
+
+def main(scene="upsetting", cells_r="24", cells_z="15"):
+    heads = [f"{mark}: kN, mm" for mark in marks]
+    print("| grid | " + " | ".join(heads) + " | steps | Newton a step | cuts | seconds |")
+    print("|---" * (len(heads) + 5) + "|")
+    for factor, name in ((1, "1 mm"), (2, "0.5 mm"), (4, "0.25 mm")):
+        output = root / "output" / f"table_{scene}_{factor}"
+        cells = f"{int(cells_r) * factor}, {int(cells_z) * factor}"
+        subprocess.run(
+            [
+                root / "build/release/impm_dealii",
+                root / f"prm/{scene}.prm",
+                "--quiet",
+                "--output",
+                output,
+                "--set",
+                f"Grid/Cells={cells}",
+                "--set",
+                "Output/Pictures=false",
+            ],
+            check=True,
+        )
+        with open(output / "history.csv", newline="") as file:
+            rows = list(csv.DictReader(file))
+        with open(output / "summary.json") as file:
+            summary = json.load(file)
+        figures = [
+            f"{interpolate(rows, 'platen_load', travel) / 1e3:.1f}, "
+            f"{interpolate(rows, 'largest_radius', travel) * 1e3:.2f}"
+            for travel in marks.values()
+        ]
+        print(
+            f"| {name} | "
+            + " | ".join(figures)
+            + f" | {summary['steps']}"
+            + f" | {summary['newton_iterations'] / summary['steps']:.1f}"
+            + f" | {summary['step_cuts']} | {summary['wall_seconds']:.1f} |",
+            flush=True,
+        )
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

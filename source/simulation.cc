@@ -76,12 +76,19 @@ namespace impm
   }
 
   template <int dim>
-  bool
-  Simulation<dim>::moves_too_far() const
+  std::string
+  Simulation<dim>::forbidden_motion() const
   {
+    // Material that has not reached a face yet does not feel it: a long step
+    // could carry it through.
+    std::array<double, 2 * dim> faces;
+    for (unsigned int f = 0; f < 2 * dim; ++f)
+      faces[f] = grid.face_position(f) +
+                 (scene.faces[f].moves_grid ? grid_motion(f) : 0.);
+    const auto outside = find_point_outside<dim>(balance, u, points, faces);
     // Between ranks a point is found only where the neighbour can see it.
-    if (Utilities::MPI::n_mpi_processes(communicator) == 1)
-      return false;
+    if (!outside.empty() || Utilities::MPI::n_mpi_processes(communicator) == 1)
+      return outside;
     const auto motion = [&](const Point<dim> &x) {
       Tensor<1, dim> displacement;
       for (unsigned int f = 0; f < 2 * dim; ++f)
@@ -94,7 +101,9 @@ namespace impm
           }
       return displacement;
     };
-    return largest_motion<dim>(balance, u, points, motion) > 0.95;
+    return largest_motion<dim>(balance, u, points, motion) > 0.95 ?
+             "a point moves across more than a cell" :
+             "";
   }
 
   template <int dim>
@@ -126,10 +135,10 @@ namespace impm
                        "");
     console.detail("  residuals:" + iterations.str());
     balance.constraints.interpolate_hanging(u);
-    if (result.converged && moves_too_far())
+    if (result.converged)
       {
-        result.converged = false;
-        result.failure   = "a point moves across more than a cell";
+        result.failure   = forbidden_motion();
+        result.converged = result.failure.empty();
       }
     return result;
   }

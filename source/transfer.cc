@@ -1,5 +1,7 @@
 #include <impm/transfer.h>
 
+#include <sstream>
+
 namespace impm
 {
   using namespace dealii;
@@ -83,6 +85,49 @@ namespace impm
     return Utilities::MPI::max(largest, balance.grid.communicator);
   }
 
+  template <int dim>
+  std::string
+  find_point_outside(const MomentumBalance<dim>        &balance,
+                     const Vector                      &u,
+                     const MaterialPoints<dim>         &points,
+                     const std::array<double, 2 * dim> &faces)
+  {
+    std::string outside;
+    auto        particle = points.sorted.particles.begin();
+    for (const auto &cell : balance.footprints().cells)
+      for (unsigned int e = cell.begin; e < cell.end; ++e, ++particle)
+        {
+          const auto x =
+            particle->get_location() +
+            interpolate<dim>(cell, balance.footprints().value(e), u);
+          for (unsigned int f = 0; f < 2 * dim && outside.empty(); ++f)
+            if (f % 2 == 0 ? x[f / 2] < faces[f] : x[f / 2] > faces[f])
+              {
+                std::ostringstream text;
+                text << "point " << particle->get_id() << " at "
+                     << particle->get_location()
+                     << " would leave the domain through its "
+                     << face_names()[f] << " face";
+                outside = text.str();
+              }
+        }
+    for (const auto &text :
+         Utilities::MPI::all_gather(balance.grid.communicator, outside))
+      if (!text.empty())
+        return text;
+    return outside;
+  }
+
+  template std::string
+  find_point_outside(const MomentumBalance<2> &,
+                     const Vector &,
+                     const MaterialPoints<2> &,
+                     const std::array<double, 4> &);
+  template std::string
+  find_point_outside(const MomentumBalance<3> &,
+                     const Vector &,
+                     const MaterialPoints<3> &,
+                     const std::array<double, 6> &);
   template void
   advance_points(const MomentumBalance<2> &,
                  const Vector &,

@@ -53,8 +53,9 @@ namespace impm
     void
     commit();
 
-    bool
-    moves_too_far() const;
+    /** Why the converged increment must not be used; empty if it may. */
+    std::string
+    forbidden_motion() const;
 
     double
     external_work_of_step() const;

@@ -30,6 +30,16 @@ namespace impm
     const MaterialPoints<dim>  &points,
     const std::function<dealii::Tensor<1, dim>(const dealii::Point<dim> &)>
       &grid_motion);
+  /**
+   * Names a point that the step would carry out of a domain whose faces lie
+   * at `faces` when it ends; empty if none. Collective.
+   */
+  template <int dim>
+  std::string
+  find_point_outside(const MomentumBalance<dim>        &balance,
+                     const Vector                      &u,
+                     const MaterialPoints<dim>         &points,
+                     const std::array<double, 2 * dim> &faces);
 } // namespace impm
 
 #endif

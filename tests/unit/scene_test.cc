@@ -1,4 +1,5 @@
 #include <impm/exceptions.h>
+#include <impm/simulation.h>
 
 #include <gtest/gtest.h>
 
@@ -18,7 +19,7 @@ namespace
                                  "Bodies/second/Shape=other",
                                  "Bodies/second/Material=rubber"};
 
-  // Building the scene's points must fail, and blame an entry.
+  // Building a simulation must fail, and blame an entry.
   void
   expect_blame(const Overrides                &overrides,
                const std::string              &entry,
@@ -30,7 +31,10 @@ namespace
     SCOPED_TRACE(all);
     try
       {
-        const Model<2> model(plane, overrides);
+        const auto          scene = scene_from<2>(plane, overrides);
+        const Simulation<2> simulation(scene,
+                                       CommandLine::Verbosity::quiet,
+                                       MPI_COMM_WORLD);
         FAIL() << "is taken";
       }
     catch (const InputError &error)
@@ -101,7 +105,7 @@ TEST(Scene, UnknownNames)
   expect_blame({"Output/Probes=p", "Output/p/Kind=motion", "Output/p/Of=top"},
                "Output/p/Of",
                {"'top'"});
-  expect_blame(second_body + Overrides{"Bodies/Names=block, block"},
+  expect_blame({"Bodies/Names=block, block"},
                "Bodies/Names",
                {"'block'", "taken"});
 }

@@ -18,7 +18,7 @@ namespace impm
       points.layout.geometry == GeometryKind::axisymmetric;
     inverse_radius.resize(axisymmetric ? n_points : 0);
 
-    std::array<double, dim>                    extents;
+    std::array<double, dim>                    extents{};
     unsigned int                               p = 0;
     typename Triangulation<dim>::cell_iterator current;
     for (const auto &particle : points.sorted.particles)

@@ -168,7 +168,7 @@ namespace impm
 
     smallest_extent = grid.smallest_cell_extent();
     ghost.build(prints, points, grid, scene.stabilization.ghost_penalty);
-    gather_load();
+    gather_load(time + dt, load);
     hold_isolated_cells();
     if (integrator.has_inertia())
       gather_inertia();
@@ -182,7 +182,8 @@ namespace impm
         add_point_forces(stresses, start_forces);
         start_forces.compress(VectorOperation::add);
         constraints.condense_hanging(start_forces);
-        start_forces += load;
+        gather_load(time, work);
+        start_forces += work;
       }
   }
 
@@ -354,12 +355,12 @@ namespace impm
 
   template <int dim>
   void
-  MomentumBalance<dim>::gather_load()
+  MomentumBalance<dim>::gather_load(const double instant, Vector &load)
   {
     load = 0;
     if (!scene.body_force)
       return;
-    scene.body_force->set_time(time + dt);
+    scene.body_force->set_time(instant);
     dealii::Vector<double> value(dim);
     auto                   particle = points.sorted.particles.begin();
     for (const auto &cell : prints.cells)

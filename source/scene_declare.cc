@@ -363,7 +363,7 @@ namespace impm
                         "cells at the edge of a body, in units of Young's "
                         "modulus; 0: none.");
       prm.declare_entry("Isolated stiffness",
-                        "1e-6",
+                        "1e-3",
                         Patterns::Double(0, 1),
                         "Stiffness that holds cells which touch no other "
                         "material when there is no inertia, in units of "

@@ -86,9 +86,10 @@ namespace impm
       faces[f] = grid.face_position(f) +
                  (scene.faces[f].moves_grid ? grid_motion(f) : 0.);
     const auto outside = find_point_outside<dim>(balance, u, points, faces);
-    // Between ranks a point is found only where the neighbour can see it.
-    if (!outside.empty() || Utilities::MPI::n_mpi_processes(communicator) == 1)
+    if (!outside.empty())
       return outside;
+    // Nor does it feel material that it has not reached; and between ranks a
+    // point is found only where the neighbour can see it.
     const auto motion = [&](const Point<dim> &x) {
       Tensor<1, dim> displacement;
       for (unsigned int f = 0; f < 2 * dim; ++f)
@@ -102,7 +103,7 @@ namespace impm
       return displacement;
     };
     return largest_motion<dim>(balance, u, points, motion) > 0.95 ?
-             "a point moves across more than a cell" :
+             "a point moves across a whole cell" :
              "";
   }
 

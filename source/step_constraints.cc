@@ -131,8 +131,10 @@ namespace impm
   {
     carriers.zero_out_ghost_values();
     mark_carriers();
-    constraints.clear();
-    constraints.copy_from(grid.hanging_nodes);
+    // Not copied from those of the grid, which are closed: hanging nodes must
+    // be resolved against what their masters get below.
+    constraints.reinit(grid.locally_relevant_dofs);
+    constraints.merge(grid.hanging_nodes);
     const unsigned int n_local = dim * grid.node_positions().size();
     is_constrained.assign(n_local, false);
     const auto &partitioner = *carriers.get_partitioner();

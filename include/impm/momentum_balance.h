@@ -64,7 +64,7 @@ namespace impm
     void
     project_tangent();
 
-    /** Minus the gradient of the potential; zero where constrained. */
+    /** Gradient of the potential (N); zero where constrained. */
     const Vector &
     residual() const
     {
@@ -159,8 +159,9 @@ namespace impm
     bool
     evaluate_materials(bool with_tangent, double &potential);
 
+    /** Minus the external forces at an instant (N). */
     void
-    gather_load();
+    gather_load(double instant, Vector &load);
 
     void
     hold_isolated_cells();

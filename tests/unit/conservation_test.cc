@@ -91,11 +91,6 @@ namespace
     EXPECT_GT(end.strain_energy + end.plastic_work, 1e-6);
     EXPECT_LT(end.strain_energy + end.plastic_work + end.kinetic_energy,
               start.kinetic_energy * (1 + 1e-12));
-    if (std::getenv("IMPM_TEST_FIGURES") != nullptr)
-      std::cout << all << ": momentum " << largest << " of "
-                << start.momentum.norm() << ", energy " << start.kinetic_energy
-                << " -> " << end.kinetic_energy << " + " << end.strain_energy
-                << " + " << end.plastic_work << std::endl;
   }
 
   const Overrides space        = {"Geometry/box/Lower corner=0.3, 0.4, 0.4",

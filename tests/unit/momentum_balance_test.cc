@@ -189,12 +189,6 @@ namespace
     EXPECT_LT(deviation.symmetry, 1e-14);
     if (model.grid.hanging_nodes.n_constraints() == 0)
       EXPECT_LT(deviation.diagonal, 1e-13);
-    if (std::getenv("IMPM_TEST_FIGURES") != nullptr)
-      std::cout << all << ": residual " << deviation.residual << ", tangent "
-                << deviation.tangent << ", lift " << deviation.lift
-                << ", matrix " << deviation.matrix << ", symmetry "
-                << deviation.symmetry << ", diagonal " << deviation.diagonal
-                << std::endl;
   }
 
   const Overrides trapezoidal   = {"Time/Integrator=theta",

@@ -1,7 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <iomanip>
-
 #include "scene_fixture.h"
 
 using namespace dealii;
@@ -52,16 +50,6 @@ namespace
         text << ' ' << r;
       return text.str();
     }();
-    if (std::getenv("IMPM_TEST_FIGURES") != nullptr)
-      {
-        std::cout << all << ": residuals";
-        for (const double r : result.residuals)
-          std::cout << ' ' << r;
-        std::cout << ", orders";
-        for (const double o : found)
-          std::cout << ' ' << o;
-        std::cout << std::endl;
-      }
   }
 } // namespace
 

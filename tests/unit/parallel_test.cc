@@ -74,12 +74,12 @@ namespace
     const auto together = run(scene, MPI_COMM_WORLD, path);
 
     ASSERT_EQ(alone.at("step").size(), 5u);
-    double      worst = 0;
-    std::string where;
     for (const auto &[name, values] : alone)
       {
+        // How Newton's method got there may depend on round-off.
         if (name == "wall_seconds" || name == "residual" ||
-            name.find("iterations") != std::string::npos)
+            name.find("iterations") != std::string::npos ||
+            name == "line_searches" || name == "noise_stops")
           continue;
         const auto &others = together.at(name);
         ASSERT_EQ(others.size(), values.size());
@@ -93,19 +93,10 @@ namespace
         if (largest > 1e-12)
           {
             EXPECT_LT(error / largest, 1e-7) << name;
-            if (error / largest > worst)
-              {
-                worst = error / largest;
-                where = name;
-              }
           }
       }
     EXPECT_GT(alone.at("plastic_work").back(), 0.);
     EXPECT_GT(alone.at("load").back(), 0.);
-    if (std::getenv("IMPM_TEST_FIGURES") != nullptr)
-      std::cout << all << ": " << worst << " (" << where << "), load "
-                << alone.at("load").back() << ", radius "
-                << alone.at("radius").back() << std::endl;
   }
 
   // The upsetting of prm/upsetting.prm on a coarse grid, in units of 10 mm,
@@ -226,4 +217,25 @@ TEST(ParallelMpi, QuasiStaticWithAMG)
                Overrides{"Time/Integrator=quasi-static",
                          "Solver/Linear solver=CG",
                          "Solver/Linear tolerance=1e-6"});
+}
+
+
+TEST(ParallelMpi, InSpace)
+{
+  compare<3>(block_scene("3D"),
+             plastic + refined +
+               Overrides{"Time/Time step=0.2",
+                         "Boundary conditions/bottom/Type=fixed",
+                         "Boundary conditions/top/Type=displacement",
+                         "Boundary conditions/top/Value=0.1*t; -0.1*t; 0",
+                         "Boundary conditions/top/Moves the grid=true",
+                         "Grid/Lower corner=-0.5, 0, 0",
+                         "Grid/Upper corner=1.5, 1, 1",
+                         "Boundary conditions/back/Type=slip",
+                         "Boundary conditions/front/Type=slip",
+                         "Output/Probes=radius",
+                         "Output/radius/Kind=extent",
+                         "Output/Reactions=load",
+                         "Output/load/On=top",
+                         "Output/load/Direction=0, 1, 0"});
 }

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+
 #include "scene_fixture.h"
 
 using namespace dealii;
@@ -143,10 +145,6 @@ namespace
     const double expected_work =
       volume * scalar_product(stress, in_space(other));
     EXPECT_NEAR(work / expected_work, 1., 1e-10);
-    if (std::getenv("IMPM_TEST_FIGURES") != nullptr)
-      std::cout << all << ": strain " << error << ", work "
-                << std::abs(work / expected_work - 1) << ", iterations "
-                << result.iterations << std::endl;
   }
 
   template <int dim>
@@ -278,11 +276,6 @@ namespace
         std::max(stress_error,
                  (read_stress(p) - q3 * stresses[p] * transpose(q3)).norm());
     EXPECT_LT(stress_error, 1e-14);
-    if (std::getenv("IMPM_TEST_FIGURES") != nullptr)
-      std::cout << all << ": potential "
-                << std::abs(after.potential - before.potential) << ", force "
-                << error << ", stress " << stress_error << ", ghost energy "
-                << ghost.energy(u) << std::endl;
   }
 } // namespace
 

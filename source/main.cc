@@ -113,6 +113,12 @@ main(int argc, char **argv)
       say("the computation cannot go on: ", error.what());
       return 2;
     }
+  catch (const dealii::ExceptionBase &error)
+    {
+      std::ostringstream info;
+      error.print_info(info);
+      return fail_alone(info.str());
+    }
   catch (const std::bad_alloc &)
     {
       return fail_alone("out of memory");

@@ -3,6 +3,7 @@
 
 #include <impm/exceptions.h>
 #include <impm/parameter_file.h>
+#include <impm/parameter_messages.h>
 
 #include <fstream>
 #include <sstream>
@@ -11,16 +12,6 @@ namespace impm
 {
   namespace
   {
-    std::string
-    on_one_line(const std::string &text)
-    {
-      std::istringstream in(text);
-      std::string        word, line;
-      while (in >> word)
-        line += (line.empty() ? "" : " ") + word;
-      return line;
-    }
-
     std::vector<std::string>
     split_path(const std::string &path)
     {
@@ -113,9 +104,7 @@ namespace impm
         }
       catch (dealii::ExceptionBase &exception)
         {
-          std::ostringstream info;
-          exception.print_info(info);
-          throw InputError("", on_one_line(info.str()));
+          throw InputError("", describe_error(exception, input, *prm));
         }
     };
     parse(text, file_name);
@@ -132,25 +121,14 @@ namespace impm
           split_path(path))
         return "--set " + *override;
 
-    const auto               wanted = split_path(path);
-    std::vector<std::string> here;
-    std::istringstream       in(text);
-    std::string              line, place;
-    for (unsigned int number = 1; std::getline(in, line); ++number)
-      {
-        line = dealii::Utilities::trim(line.substr(0, line.find('#')));
-        if (line.rfind("subsection ", 0) == 0)
-          here.push_back(dealii::Utilities::trim(line.substr(11)));
-        else if (line == "end" && !here.empty())
-          here.pop_back();
-        else if (line.rfind("set ", 0) == 0)
-          here.push_back(
-            dealii::Utilities::trim(line.substr(4, line.find('=') - 4)));
+    const auto  wanted = split_path(path);
+    std::string place;
+    for_each_entry(
+      text,
+      [&](const std::vector<std::string> &here, const unsigned int line, bool) {
         if (here == wanted)
-          place = "file " + file_name + ", line " + std::to_string(number);
-        if (line.rfind("set ", 0) == 0)
-          here.pop_back();
-      }
+          place = "file " + file_name + ", line " + std::to_string(line);
+      });
     return place.empty() ? "file " + file_name + " (entry not set there)" :
                            place;
   }

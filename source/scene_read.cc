@@ -1,6 +1,7 @@
 #include <deal.II/base/utilities.h>
 
 #include <impm/exceptions.h>
+#include <impm/expressions.h>
 #include <impm/materials/list.h>
 #include <impm/scene.h>
 
@@ -40,56 +41,6 @@ namespace impm
       return constants;
     }
 
-    /** Expressions between semicolons; null when the entry is empty. */
-    template <int n_variables>
-    std::shared_ptr<FunctionParser<n_variables>>
-    read_function(const ParameterHandler &prm,
-                  const std::string      &entry,
-                  const unsigned int      n_components,
-                  const bool              with_time,
-                  const Constants        &constants)
-    {
-      const std::string text = prm.get(entry);
-      if (text.empty())
-        return nullptr;
-      const auto expressions = dealii::Utilities::split_string_list(text, ';');
-      if (expressions.size() != n_components)
-        throw InputError(entry,
-                         "found '" + text + "', allowed are " +
-                           std::to_string(n_components) +
-                           " expressions between semicolons");
-      auto function =
-        std::make_shared<FunctionParser<n_variables>>(n_components);
-      std::string variables =
-        n_variables == 1 ?
-          "t" :
-          FunctionParser<n_variables>::default_variable_names();
-      if (with_time && n_variables > 1)
-        variables += ",t";
-      try
-        {
-          function->initialize(variables,
-                               expressions,
-                               constants,
-                               with_time && n_variables > 1);
-          // muparser compiles at the first use: do it here, where a mistake
-          // can still be named.
-          dealii::Vector<double> value(n_components);
-          function->vector_value(dealii::Point<n_variables>(), value);
-        }
-      catch (const dealii::ExceptionBase &exception)
-        {
-          std::ostringstream info;
-          exception.print_info(info);
-          std::istringstream in(info.str());
-          std::string        word, reason;
-          while (in >> word)
-            reason += " " + word;
-          throw InputError(entry, "found '" + text + "':" + reason);
-        }
-      return function;
-    }
-
     template <int dim>
     dealii::Point<dim>
     read_point(const ParameterHandler &prm, const std::string &entry)
@@ -120,7 +71,7 @@ namespace impm
       grid.refinement_levels = prm.get_integer("Local refinements");
       if (grid.refinement_levels > 0)
         grid.refine_where =
-          read_function<dim>(prm, "Refine where", 1, false, constants);
+          read_expressions<dim>(prm, "Refine where", 1, false, constants);
       return grid;
     }
 
@@ -140,7 +91,7 @@ namespace impm
       if (type == "free" || type == "fixed" || type == "slip")
         return spec;
       spec.is_velocity = type.find("velocity") != std::string::npos;
-      spec.value       = read_function<dim>(
+      spec.value       = read_expressions<dim>(
         prm, "Value", only_normal ? 1 : dim, true, constants);
       if (!spec.value)
         throw InputError("Value", "found nothing, allowed are expressions");
@@ -183,7 +134,7 @@ namespace impm
       if (body.rigid)
         {
           body.displacement =
-            read_function<1>(prm, "Displacement", dim, true, constants);
+            read_expressions<1>(prm, "Displacement", dim, true, constants);
           const std::string contact = prm.get("Contact");
           if (contact != "no slip")
             body.slip_normal = contact.back() - 'x';
@@ -198,7 +149,7 @@ namespace impm
           body.material = pick(materials, "Material");
           if (inertia)
             body.velocity =
-              read_function<dim>(prm, "Velocity", dim, false, constants);
+              read_expressions<dim>(prm, "Velocity", dim, false, constants);
         }
       return body;
     }
@@ -472,7 +423,7 @@ namespace impm
     });
     in_section(prm, "Loads", [&]() {
       scene.body_force =
-        read_function<dim>(prm, "Body force", dim, true, scene.constants);
+        read_expressions<dim>(prm, "Body force", dim, true, scene.constants);
     });
     in_section(prm, "Solver", [&]() { scene.solver = read_solver(prm); });
     in_section(prm, "Stabilization", [&]() {

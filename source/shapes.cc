@@ -4,6 +4,7 @@
 #include <deal.II/base/utilities.h>
 
 #include <impm/exceptions.h>
+#include <impm/expressions.h>
 #include <impm/parameter_file.h>
 #include <impm/shapes.h>
 
@@ -248,39 +249,11 @@ namespace impm
                     const Constants &constants,
                     const NamedShapes<dim> &)
     {
-      const std::string entry      = "Inside where negative";
-      const std::string expression = prm.get(entry);
-      const auto        parser     = std::make_shared<FunctionParser<dim>>();
-      const std::string variables  = parser->default_variable_names();
-
-      // deal.II also prints the message before it throws: we report it once.
-      std::ostringstream printed, flaw;
-      const auto         screen = std::cerr.rdbuf(printed.rdbuf());
-      try
-        {
-          parser->initialize(variables, std::vector{expression}, constants);
-          parser->value(Point<dim>());
-        }
-      catch (const dealii::ExceptionBase &exception)
-        {
-          exception.print_info(flaw);
-        }
-      catch (...)
-        {
-          // muParser's own exceptions know no base class, and this is the one
-          // place where deal.II lets them through.
-          flaw << "a constant has a name that cannot stand in expressions";
-        }
-      std::cerr.rdbuf(screen);
-
-      // Around muParser's message, deal.II calls the error's number a column.
-      const auto said = Utilities::split_string_list(flaw.str(), "said: ");
-      if (!said.empty())
-        throw InputError(entry,
-                         "found '" + expression +
-                           "', allowed are expressions in " + variables +
-                           " and the constants: " +
-                           Utilities::trim(said.back()));
+      const std::string entry = "Inside where negative";
+      const auto        parser =
+        read_expressions<dim>(prm, entry, 1, false, constants);
+      if (!parser)
+        throw InputError(entry, "found nothing, allowed is an expression");
       const auto is_inside = [parser](const Point<dim> &point) {
         return parser->value(point) <= 0;
       };

@@ -232,7 +232,7 @@ namespace impm
     if (Utilities::MPI::this_mpi_process(points.communicator) != 0)
       return;
 
-    file << std::setprecision(10) << report.step << ',' << report.time << ','
+    file << std::setprecision(12) << report.step << ',' << report.time << ','
          << report.dt << ',' << report.newton_iterations << ','
          << report.linear_iterations << ',' << report.line_searches << ','
          << report.step_cuts << ',' << n_points << ',' << active_cells << ','

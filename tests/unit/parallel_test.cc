@@ -1,11 +1,6 @@
-#include <impm/simulation.h>
-
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <map>
-#include <sstream>
-
+#include "run_scene.h"
 #include "scene_fixture.h"
 
 using namespace dealii;
@@ -13,48 +8,6 @@ using namespace impm;
 
 namespace
 {
-  using Columns = std::map<std::string, std::vector<double>>;
-
-  Columns
-  read_history(const std::string &directory)
-  {
-    std::ifstream            file(directory + "/history.csv");
-    std::string              line, field;
-    std::vector<std::string> names;
-    Columns                  columns;
-    std::getline(file, line);
-    std::istringstream header(line);
-    while (std::getline(header, field, ','))
-      names.push_back(field);
-    while (std::getline(file, line))
-      {
-        std::istringstream row(line);
-        for (const auto &name : names)
-          if (std::getline(row, field, ','))
-            columns[name].push_back(std::stod(field));
-      }
-    return columns;
-  }
-
-  template <int dim>
-  Columns
-  run(const Scene<dim>  &scene,
-      const MPI_Comm     communicator,
-      const std::string &directory)
-  {
-    Simulation<dim> simulation(scene,
-                               CommandLine::Verbosity::quiet,
-                               communicator);
-    simulation.run(directory, "test", "");
-    MPI_Barrier(MPI_COMM_WORLD);
-    const auto columns = read_history(directory);
-    MPI_Barrier(MPI_COMM_WORLD);
-    std::error_code ignored;
-    std::filesystem::remove_all(directory, ignored);
-    MPI_Barrier(MPI_COMM_WORLD);
-    return columns;
-  }
-
   // The scene alone on each rank, then on all of them together.
   template <int dim>
   void

@@ -1,0 +1,130 @@
+#include <impm/version.h>
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "run_scene.h"
+
+using namespace impm;
+
+// The scenes of prm/ against their references.
+namespace
+{
+  template <int dim = 2>
+  Columns
+  run_file(const std::string              &name,
+           const std::vector<std::string> &overrides = {})
+  {
+    auto all = overrides;
+    all.push_back("Output/Pictures=false");
+    ParameterFile file(std::string(source_scene_folder) + "/" + name + ".prm",
+                       all,
+                       declare_scene);
+    return run(read_scene<dim>(file.handler()),
+               MPI_COMM_SELF,
+               testing::TempDir() + "impm_run_" + std::to_string(getpid()));
+  }
+
+  double
+  sum(const std::vector<double> &values)
+  {
+    return std::accumulate(values.begin(), values.end(), 0.);
+  }
+} // namespace
+
+TEST(Upsetting, WithoutFrictionIsExact)
+{
+  for (const std::string cells : {"12, 8", "24, 15", "48, 30"})
+    {
+      const auto columns =
+        run_file("upsetting_frictionless", {"Grid/Cells=" + cells});
+      EXPECT_NEAR(columns.at("platen_load").back(), 764.5e3, 0.7645e3) << cells;
+      // The cells of the coarsest grid do not fit the radius.
+      if (cells != "12, 8")
+        {
+          EXPECT_NEAR(columns.at("largest_radius").back(), 15.796e-3, 15.8e-6)
+            << cells;
+        }
+    }
+}
+
+TEST(Upsetting, GridThatFollowsThePlaten)
+{
+  const auto  columns = run_file("upsetting");
+  const auto &load    = columns.at("platen_load");
+  EXPECT_NEAR(columns.at("platen_displacement").back(), 9e-3, 1e-12);
+  EXPECT_GT(load.back(), 800e3);
+  EXPECT_LT(load.back(), 900e3);
+  EXPECT_GT(columns.at("largest_radius").back(), 16.2e-3);
+  EXPECT_LT(columns.at("largest_radius").back(), 16.8e-3);
+  EXPECT_LE(sum(columns.at("newton_iterations")) / load.size(), 6.);
+  EXPECT_EQ(sum(columns.at("step_cuts")), 0.);
+  EXPECT_EQ(columns.at("points").back(), 600.);
+  EXPECT_NEAR(columns.at("mass").back(),
+              7800 * dealii::numbers::PI * 1e-4 * 0.015,
+              1e-12);
+  // Scattered by the fold, but never far below what has been before.
+  double largest = 0;
+  for (const double value : load)
+    {
+      EXPECT_GT(value, 0.97 * largest);
+      largest = std::max(largest, value);
+    }
+}
+
+TEST(Upsetting, QuasiStaticAgreesWithBackwardEuler)
+{
+  // "Theta" and "Velocity" belong to inertia alone: the frictionless scene has
+  // neither.
+  const std::vector<std::string> platen = {
+    "Boundary conditions/top/Type=velocity",
+    "Boundary conditions/top/Value=0; -speed"};
+  auto inertia = platen;
+  inertia.push_back("Time/Integrator=theta");
+  const auto slow = run_file("upsetting_frictionless", platen);
+  const auto fast = run_file("upsetting_frictionless", inertia);
+  for (const unsigned int step : {22u, 44u, 67u, 89u})
+    EXPECT_NEAR(fast.at("platen_load")[step] / slow.at("platen_load")[step],
+                1.,
+                0.02);
+}
+
+TEST(Upsetting, PlatenOfRigidPoints)
+{
+  const auto columns = run_file("upsetting_rigid_points");
+  EXPECT_GT(columns.at("platen_load").back(), 800e3);
+  EXPECT_LT(columns.at("platen_load").back(), 1100e3);
+  EXPECT_EQ(columns.at("points").back(), 600.);
+  EXPECT_EQ(sum(columns.at("step_cuts")), 0.);
+}
+
+TEST(Upsetting, QuarterInThreeDimensions)
+{
+  const auto quarter = run_file<3>("upsetting_quarter");
+  const auto whole   = run_file("upsetting", {"Time/End time=0.0045"});
+  EXPECT_NEAR(quarter.at("platen_load").back() / whole.at("platen_load").back(),
+              1.,
+              0.1);
+  EXPECT_NEAR(quarter.at("largest_radius").back() /
+                whole.at("largest_radius").back(),
+              1.,
+              0.05);
+}
+
+TEST(Upsetting, LongStepsDoNotCarryPointsThroughThePlaten)
+{
+  const auto columns = run_file("upsetting", {"Time/Time step=1e-3"});
+  EXPECT_EQ(columns.at("points").back(), 600.);
+  EXPECT_NEAR(columns.at("time").back(), 0.009, 1e-12);
+}
+
+TEST(Extreme, BallThatNothingHolds)
+{
+  const auto columns = run_file("extreme/isolated_ball");
+  EXPECT_GT(columns.at("held_cells").back(), 0.);
+  // The block settles as if alone, rho g H^2 / (2 M).
+  const double modulus    = 1e6 * 0.7 / (1.3 * 0.4);
+  const double settlement = 1e4 * 0.25 / (2 * modulus);
+  EXPECT_NEAR(columns.at("settlement").back(), -settlement, 0.01 * settlement);
+}

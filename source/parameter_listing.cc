@@ -1,6 +1,11 @@
 #include <impm/materials/list.h>
 #include <impm/parameter_listing.h>
+#include <impm/parameter_messages.h>
 #include <impm/scene.h>
+
+#include <nlohmann/json.hpp>
+
+#include <sstream>
 
 namespace impm
 {
@@ -48,6 +53,30 @@ namespace impm
         return item;
       return fallback;
     }
+
+    /** A section of ParameterHandler's own listing, as lines of a file. */
+    void
+    print_section(const nlohmann::ordered_json &section,
+                  const std::string            &indent,
+                  std::ostream                 &out)
+    {
+      for (const auto &[name, content] : section.items())
+        if (content.contains("value"))
+          {
+            const std::string range = describe_pattern(
+              content["pattern_description"].get<std::string>());
+            out << indent << "# " << content["documentation"].get<std::string>()
+                << (range == "text" ? "" : " Allowed: " + range + ".") << '\n'
+                << indent << "set " << name << " = "
+                << content["default_value"].get<std::string>() << '\n';
+          }
+        else
+          {
+            out << indent << "subsection " << name << '\n';
+            print_section(content, indent + "  ", out);
+            out << indent << "end\n";
+          }
+    }
   } // namespace
 
   void
@@ -55,8 +84,10 @@ namespace impm
   {
     dealii::ParameterHandler prm;
     declare_scene(prm, choose_everything);
-    prm.print_parameters(out,
-                         dealii::ParameterHandler::Description |
+    std::stringstream listing;
+    prm.print_parameters(listing,
+                         dealii::ParameterHandler::JSON |
                            dealii::ParameterHandler::KeepDeclarationOrder);
+    print_section(nlohmann::ordered_json::parse(listing), "", out);
   }
 } // namespace impm

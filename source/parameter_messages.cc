@@ -23,50 +23,6 @@ namespace impm
       return line;
     }
 
-    /** "[Double 2.22507e-308...MAX_DOUBLE (inclusive)]" as a person says it. */
-    std::string
-    describe_pattern(const std::string &pattern)
-    {
-      std::smatch match;
-      const auto  range = [](const std::string &what,
-                            const std::string &lower,
-                            const std::string &upper) {
-        const bool open = upper == "MAX_DOUBLE" || upper == "2147483647";
-        if (lower == "-MAX_DOUBLE" && open)
-          return what;
-        if (open && (lower == "2.22507e-308" || lower == "1e-300"))
-          return what + " greater than 0";
-        if (open)
-          return what + " of at least " + lower;
-        return what + " from " + (lower == "2.22507e-308" ? "above 0" : lower) +
-               " to " + upper;
-      };
-      if (std::regex_match(pattern,
-                           match,
-                           std::regex(
-                             R"(\[Double (.*)\.\.\.(.*) \(inclusive\)\])")))
-        return range("a number", match[1], match[2]);
-      if (std::regex_match(
-            pattern,
-            match,
-            std::regex(R"(\[Integer range (.*)\.\.\.(.*) \(inclusive\)\])")))
-        return range("an integer", match[1], match[2]);
-      if (std::regex_match(pattern,
-                           match,
-                           std::regex(R"(\[Selection (.*?) ?\])")))
-        return "one of: " +
-               std::regex_replace(match[1].str(), std::regex(R"(\|)"), ", ");
-      if (std::regex_match(
-            pattern,
-            match,
-            std::regex(R"(\[List of <(.*)> of length (\d+)\.\.\.(\d+).*\])")))
-        return match[2].str() + " to " + match[3].str() +
-               " values between commas, each " + describe_pattern(match[1]);
-      if (pattern == "[Bool]")
-        return "true or false";
-      return pattern;
-    }
-
     /** The section that a line of a file stands in. */
     std::vector<std::string>
     section_of(const std::string &text, const unsigned int wanted)
@@ -105,6 +61,53 @@ namespace impm
       return names.empty() ? "none" : names;
     }
   } // namespace
+
+  std::string
+  describe_pattern(const std::string &pattern)
+  {
+    std::smatch match;
+    const auto  range = [](const std::string &what,
+                          const std::string &lower,
+                          const std::string &upper) {
+      const bool open = upper == "MAX_DOUBLE" || upper == "2147483647";
+      if (lower == "-MAX_DOUBLE" && open)
+        return what;
+      if (open && (lower == "2.22507e-308" || lower == "1e-300"))
+        return what + " greater than 0";
+      if (open)
+        return what + " of at least " + lower;
+      return what + " from " + (lower == "2.22507e-308" ? "above 0" : lower) +
+             " to " + upper;
+    };
+    if (std::regex_match(pattern,
+                         match,
+                         std::regex(
+                           R"(\[Double (.*)\.\.\.(.*) \(inclusive\)\])")))
+      return range("a number", match[1], match[2]);
+    if (std::regex_match(
+          pattern,
+          match,
+          std::regex(R"(\[Integer range (.*)\.\.\.(.*) \(inclusive\)\])")))
+      return range("an integer", match[1], match[2]);
+    if (std::regex_match(pattern,
+                         match,
+                         std::regex(R"(\[Selection (.*?) ?\])")))
+      return "one of: " +
+             std::regex_replace(match[1].str(), std::regex(R"(\|)"), ", ");
+    if (std::regex_match(
+          pattern,
+          match,
+          std::regex(R"(\[List of <(.*)> of length (\d+)\.\.\.(\d+).*\])")))
+      return (match[3].str() == "4294967295" ?
+                "values" :
+                match[2].str() + " to " + match[3].str() + " values") +
+             " between commas, each " + describe_pattern(match[1]);
+    if (pattern == "[Bool]")
+      return "true or false";
+    if (pattern == "[Anything]")
+      return "text";
+    return pattern;
+  }
 
   void
   for_each_entry(const std::string                             &text,

@@ -20,6 +20,13 @@ namespace impm
                                           bool is_subsection)> &action);
 
   /**
+   * A pattern as a person says it: "[Double 2.22507e-308...MAX_DOUBLE
+   * (inclusive)]" is a number greater than 0.
+   */
+  std::string
+  describe_pattern(const std::string &pattern);
+
+  /**
    * What ParameterHandler says of a file that it cannot read, in the words of
    * this program: file, line, entry, what was found, what is allowed.
    * `text` is what was read, `prm` has what is declared.

@@ -36,7 +36,7 @@ namespace impm
         {"Bodies/Names", "deformable,rigid,from file"},
         {"Bodies/rigid/Kind", "rigid"},
         {"Bodies/from file/Points from", "file"},
-        {"Time/Integrator", "theta"},
+        {"Time/Integrator", "any"},
         {"Solver/Linear solver", "GMRES"},
         {"Output/Probes", "point,largest,extent,motion"},
         {"Output/Reactions", "reaction"}};

@@ -34,6 +34,13 @@ namespace impm
       return names_of(names);
     }
 
+    /** Whether an option is chosen; "any" stands for all of them. */
+    bool
+    may_be(const std::string &chosen, const std::string &option)
+    {
+      return chosen == option || chosen == "any";
+    }
+
     void
     declare_general(ParameterHandler &prm)
     {
@@ -264,7 +271,7 @@ namespace impm
                         Patterns::Selection("quasi-static|theta"),
                         "Quasi-static: no inertia. Theta: Sulsky & Kaul "
                         "(2004), eq. 2.4.1.");
-      if (chosen("Time/Integrator", "quasi-static") == "theta")
+      if (may_be(chosen("Time/Integrator", "quasi-static"), "theta"))
         prm.declare_entry("Theta",
                           "1",
                           Patterns::Double(0.5, 1),
@@ -353,7 +360,8 @@ namespace impm
     }
 
     void
-    declare_stabilization(ParameterHandler &prm)
+    declare_stabilization(ParameterHandler            &prm,
+                          const ParameterFile::Chosen &chosen)
     {
       prm.enter_subsection("Stabilization");
       prm.declare_entry("Ghost penalty",
@@ -362,12 +370,13 @@ namespace impm
                         "On jumps of the gradient of the increment between "
                         "cells at the edge of a body, in units of Young's "
                         "modulus; 0: none.");
-      prm.declare_entry("Isolated stiffness",
-                        "1e-3",
-                        Patterns::Double(0, 1),
-                        "Stiffness that holds cells which touch no other "
-                        "material when there is no inertia, in units of "
-                        "Young's modulus; 0: none.");
+      if (may_be(chosen("Time/Integrator", "quasi-static"), "quasi-static"))
+        prm.declare_entry("Isolated stiffness",
+                          "1e-3",
+                          Patterns::Double(0, 1),
+                          "Stiffness that holds cells which touch no other "
+                          "material when there is no inertia, in units of "
+                          "Young's modulus; 0: none.");
       prm.leave_subsection();
     }
 
@@ -509,7 +518,7 @@ namespace impm
     declare_loads(prm);
     declare_time(prm, chosen);
     declare_solver(prm, chosen);
-    declare_stabilization(prm);
+    declare_stabilization(prm, chosen);
     declare_output(prm, chosen);
   }
 } // namespace impm

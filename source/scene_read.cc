@@ -429,10 +429,19 @@ namespace impm
     in_section(prm, "Stabilization", [&]() {
       scene.stabilization.ghost_penalty = prm.get_double("Ghost penalty");
       scene.stabilization.isolated_stiffness =
-        prm.get_double("Isolated stiffness");
+        scene.has_inertia() ? 0. : prm.get_double("Isolated stiffness");
     });
     in_section(prm, "Output", [&]() { scene.output = read_output<dim>(prm); });
     check(scene);
+    // Nothing else holds what no body and no other shape uses.
+    for (const auto &[name, shape] : shapes)
+      if (shape.use_count() == 1)
+        throw InputError("Geometry/Shapes",
+                         "shape '" + name + "' is used by no body");
+    for (const auto &[name, material] : materials)
+      if (material.use_count() == 1)
+        throw InputError("Materials/Names",
+                         "material '" + name + "' is used by no body");
     return scene;
   }
 

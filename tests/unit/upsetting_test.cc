@@ -1,5 +1,3 @@
-#include <impm/version.h>
-
 #include <gtest/gtest.h>
 
 #include <numeric>
@@ -18,7 +16,7 @@ namespace
   {
     auto all = overrides;
     all.push_back("Output/Pictures=false");
-    ParameterFile file(std::string(source_scene_folder) + "/" + name + ".prm",
+    ParameterFile file(std::string(IMPM_SCENES) + "/" + name + ".prm",
                        all,
                        declare_scene);
     return run(read_scene<dim>(file.handler()),

@@ -69,7 +69,7 @@ namespace impm
     FEFaceValues<dim>      here(grid.mapping, fe, quadrature, flags);
     FEFaceValues<dim>      there(grid.mapping, fe, quadrature, flags);
     FESubfaceValues<dim>   there_coarser(grid.mapping, fe, quadrature, flags);
-    constexpr unsigned int half = n_nodes / 2;
+    constexpr unsigned int half = max_nodes / 2;
     const bool             axisymmetric =
       points.layout.geometry == GeometryKind::axisymmetric;
 
@@ -100,30 +100,38 @@ namespace impm
           else
             there.reinit(tria_neighbor, cell->neighbor_of_neighbor(f));
 
-          Face face;
-          face.cells           = {{cell, neighbor}};
+          // Where the shape functions of both cells stand among the nodes of
+          // the face, which share some.
+          Face                                face;
+          std::array<unsigned int, max_nodes> place;
           const auto neighbors = grid.nodes_of(neighbor);
-          for (unsigned int v = 0; v < half; ++v)
+          for (unsigned int v = 0; v < max_nodes; ++v)
             {
-              face.nodes[v]        = populated.nodes[v];
-              face.nodes[half + v] = neighbors[v];
+              const unsigned int node =
+                v < half ? populated.nodes[v] : neighbors[v - half];
+              const auto end = face.nodes.begin() + face.n_nodes;
+              place[v] =
+                std::find(face.nodes.begin(), end, node) - face.nodes.begin();
+              if (place[v] == face.n_nodes)
+                face.nodes[face.n_nodes++] = node;
             }
           const double weight = gamma * std::min(stiffness[i], stiffness[j]) *
                                 cell->extent_in_direction(f / 2);
           for (const unsigned int q : here.quadrature_point_indices())
             {
-              std::array<double, n_nodes> jump;
+              std::array<double, max_nodes> jump{};
               for (unsigned int v = 0; v < half; ++v)
                 {
-                  jump[v] = here.shape_grad(v, q) * here.normal_vector(q);
-                  jump[half + v] =
-                    -(other->shape_grad(v, q) * here.normal_vector(q));
+                  jump[place[v]] +=
+                    here.shape_grad(v, q) * here.normal_vector(q);
+                  jump[place[half + v]] -=
+                    (other->shape_grad(v, q) * here.normal_vector(q));
                 }
               const double around =
                 axisymmetric ? 2 * numbers::PI * here.quadrature_point(q)[0] :
                                1.;
-              for (unsigned int a = 0; a < n_nodes; ++a)
-                for (unsigned int b = 0; b < n_nodes; ++b)
+              for (unsigned int a = 0; a < face.n_nodes; ++a)
+                for (unsigned int b = 0; b < face.n_nodes; ++b)
                   face.matrix[a][b] +=
                     weight * around * here.JxW(q) * jump[a] * jump[b];
             }
@@ -140,13 +148,13 @@ namespace impm
     for (const auto &face : faces)
       for (unsigned int c = 0; c < dim; ++c)
         {
-          std::array<double, n_nodes> values;
-          for (unsigned int b = 0; b < n_nodes; ++b)
+          std::array<double, max_nodes> values;
+          for (unsigned int b = 0; b < face.n_nodes; ++b)
             values[b] = factor * u.local_element(dim * face.nodes[b] + c);
-          for (unsigned int a = 0; a < n_nodes; ++a)
+          for (unsigned int a = 0; a < face.n_nodes; ++a)
             {
               double sum = 0;
-              for (unsigned int b = 0; b < n_nodes; ++b)
+              for (unsigned int b = 0; b < face.n_nodes; ++b)
                 sum += face.matrix[a][b] * values[b];
               force.local_element(dim * face.nodes[a] + c) += sum;
             }
@@ -160,8 +168,8 @@ namespace impm
     double sum = 0;
     for (const auto &face : faces)
       for (unsigned int c = 0; c < dim; ++c)
-        for (unsigned int a = 0; a < n_nodes; ++a)
-          for (unsigned int b = 0; b < n_nodes; ++b)
+        for (unsigned int a = 0; a < face.n_nodes; ++a)
+          for (unsigned int b = 0; b < face.n_nodes; ++b)
             sum += 0.5 * face.matrix[a][b] *
                    u.local_element(dim * face.nodes[a] + c) *
                    u.local_element(dim * face.nodes[b] + c);

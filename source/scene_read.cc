@@ -94,7 +94,7 @@ namespace impm
       spec.value       = read_expressions<dim>(
         prm, "Value", only_normal ? 1 : dim, true, constants);
       if (!spec.value)
-        throw InputError("Value", "found nothing, allowed are expressions");
+        throw InputError("Value", "found '', allowed are expressions");
       spec.moves_grid = prm.get_bool("Moves the grid");
       return spec;
     }

@@ -253,7 +253,7 @@ namespace impm
       const auto        parser =
         read_expressions<dim>(prm, entry, 1, false, constants);
       if (!parser)
-        throw InputError(entry, "found nothing, allowed is an expression");
+        throw InputError(entry, "found '', allowed is an expression");
       const auto is_inside = [parser](const Point<dim> &point) {
         return parser->value(point) <= 0;
       };

@@ -149,12 +149,9 @@ namespace impm
               local(dim * n + c, dim * n + c);
       }
     for (const auto &face : ghost.faces)
-      for (unsigned int a = 0; a < face.nodes.size(); ++a)
-        for (unsigned int b = 0; b < face.nodes.size(); ++b)
-          if (face.nodes[a] == face.nodes[b])
-            for (unsigned int c = 0; c < dim; ++c)
-              diagonal.local_element(dim * face.nodes[a] + c) +=
-                face.matrix[a][b];
+      for (unsigned int a = 0; a < face.n_nodes; ++a)
+        for (unsigned int c = 0; c < dim; ++c)
+          diagonal.local_element(dim * face.nodes[a] + c) += face.matrix[a][a];
     diagonal.compress(VectorOperation::add);
     constraints.condense_hanging(diagonal);
     diagonal *= integrator.force_factor();
@@ -167,18 +164,16 @@ namespace impm
 
   namespace
   {
-    /** The unknowns of both cells of a face, component by component. */
+    /** The unknowns of a face, those of a node together. */
     template <int dim>
     std::vector<types::global_dof_index>
-    dofs_of(const typename GhostPenalty<dim>::Face &face)
+    dofs_of(const typename GhostPenalty<dim>::Face &face, const Vector &vector)
     {
-      constexpr unsigned int               n = Footprints<dim>::n_nodes * dim;
-      std::vector<types::global_dof_index> dofs, some(n);
-      for (const auto &cell : face.cells)
-        {
-          cell->get_dof_indices(some);
-          dofs.insert(dofs.end(), some.begin(), some.end());
-        }
+      std::vector<types::global_dof_index> dofs;
+      for (unsigned int a = 0; a < face.n_nodes; ++a)
+        for (unsigned int c = 0; c < dim; ++c)
+          dofs.push_back(
+            vector.get_partitioner()->local_to_global(dim * face.nodes[a] + c));
       return dofs;
     }
   } // namespace
@@ -200,7 +195,8 @@ namespace impm
         constraints.constraints.add_entries_local_to_global(dofs, sparsity);
       }
     for (const auto &face : ghost.faces)
-      constraints.constraints.add_entries_local_to_global(dofs_of<dim>(face),
+      constraints.constraints.add_entries_local_to_global(dofs_of<dim>(face,
+                                                                       mass),
                                                           sparsity);
     for (const auto dof : owned)
       sparsity.add(dof, dof);
@@ -214,7 +210,7 @@ namespace impm
   {
     constexpr unsigned int               n = Footprints<dim>::n_nodes * dim;
     std::vector<types::global_dof_index> dofs(n);
-    FullMatrix<double>                   local(n), face_local(2 * n);
+    FullMatrix<double>                   local(n), face_local;
     matrix = 0;
     for (const auto &cell : prints.cells)
       {
@@ -225,15 +221,14 @@ namespace impm
       }
     for (const auto &face : ghost.faces)
       {
-        face_local = 0;
-        for (unsigned int a = 0; a < face.nodes.size(); ++a)
-          for (unsigned int b = 0; b < face.nodes.size(); ++b)
+        face_local.reinit(dim * face.n_nodes, dim * face.n_nodes);
+        for (unsigned int a = 0; a < face.n_nodes; ++a)
+          for (unsigned int b = 0; b < face.n_nodes; ++b)
             for (unsigned int c = 0; c < dim; ++c)
               face_local(dim * a + c, dim * b + c) =
                 integrator.force_factor() * face.matrix[a][b];
-        constraints.constraints.distribute_local_to_global(face_local,
-                                                           dofs_of<dim>(face),
-                                                           matrix);
+        constraints.constraints.distribute_local_to_global(
+          face_local, dofs_of<dim>(face, mass), matrix);
       }
     matrix.compress(VectorOperation::add);
 

@@ -22,13 +22,13 @@ namespace impm
   class GhostPenalty
   {
   public:
-    static constexpr unsigned int n_nodes = 2 * Footprints<dim>::n_nodes;
+    static constexpr unsigned int max_nodes = 2 * Footprints<dim>::n_nodes;
 
     struct Face
     {
-      std::array<typename BackgroundGrid<dim>::CellIterator, 2> cells;
-      std::array<unsigned int, n_nodes>            nodes;  ///< of both cells
-      dealii::Tensor<2, static_cast<int>(n_nodes)> matrix; ///< per component
+      unsigned int                        n_nodes = 0;
+      std::array<unsigned int, max_nodes> nodes; ///< of both cells, once each
+      dealii::Tensor<2, static_cast<int>(max_nodes)> matrix; ///< per component
     };
 
     /** `gamma` in units of Young's modulus. Collective. */

@@ -19,7 +19,10 @@ namespace
   run(const CommandLine &line, ParameterFile &file)
   {
     const Scene<dim> scene = read_scene<dim>(file.handler());
-    Simulation<dim>  simulation(scene, line.verbosity, MPI_COMM_WORLD);
+    if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
+      for (const auto &warning : scene.warnings)
+        std::cerr << "impm_dealii: warning: " << warning << std::endl;
+    Simulation<dim> simulation(scene, line.verbosity, MPI_COMM_WORLD);
     simulation.describe();
     if (line.action == CommandLine::Action::check)
       return;

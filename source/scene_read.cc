@@ -436,12 +436,10 @@ namespace impm
     // Nothing else holds what no body and no other shape uses.
     for (const auto &[name, shape] : shapes)
       if (shape.use_count() == 1)
-        throw InputError("Geometry/Shapes",
-                         "shape '" + name + "' is used by no body");
+        scene.warnings.push_back("shape '" + name + "' is used by no body");
     for (const auto &[name, material] : materials)
       if (material.use_count() == 1)
-        throw InputError("Materials/Names",
-                         "material '" + name + "' is used by no body");
+        scene.warnings.push_back("material '" + name + "' is used by no body");
     return scene;
   }
 

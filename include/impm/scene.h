@@ -146,6 +146,9 @@ namespace impm
     StabilizationSpec                            stabilization;
     OutputSpec                                   output;
 
+    /** What the file names to no effect. */
+    std::vector<std::string> warnings;
+
     /** Without inertia there is no velocity. */
     bool
     has_inertia() const

@@ -127,7 +127,7 @@ TEST(Scene, ValuesThatCannotBe)
                {"'speed'"});
   expect_blame({"Boundary conditions/top/Type=velocity"},
                "Boundary conditions/top/Value",
-               {"nothing"});
+               {"found ''"});
   expect_blame({"General/Constants=speed"},
                "General/Constants",
                {"'speed'", "name = number"});

@@ -69,12 +69,31 @@ namespace impm
   {
     dof_handler.distribute_dofs(fe);
     DoFTools::extract_locally_relevant_dofs(dof_handler, locally_relevant_dofs);
-    partitioner = std::make_shared<Utilities::MPI::Partitioner>(
-      dof_handler.locally_owned_dofs(), locally_relevant_dofs, communicator);
     hanging_nodes.clear();
     hanging_nodes.reinit(locally_relevant_dofs);
     DoFTools::make_hanging_node_constraints(dof_handler, hanging_nodes);
+    if (Utilities::MPI::n_mpi_processes(communicator) > 1 &&
+        triangulation.has_hanging_nodes())
+      {
+        // A box may touch a ghost cell with a node that hangs on a cell which
+        // this rank does not see.
+        hanging_nodes.make_consistent_in_parallel(
+          dof_handler.locally_owned_dofs(),
+          locally_relevant_dofs,
+          communicator);
+        locally_relevant_dofs = hanging_nodes.get_local_lines();
+        for (const auto &line : hanging_nodes.get_lines())
+          for (const auto &entry : line.entries)
+            locally_relevant_dofs.add_index(entry.first);
+        AffineConstraints<double> known(locally_relevant_dofs);
+        known.merge(hanging_nodes,
+                    AffineConstraints<double>::no_conflicts_allowed,
+                    true);
+        hanging_nodes.copy_from(known);
+      }
     hanging_nodes.close();
+    partitioner = std::make_shared<Utilities::MPI::Partitioner>(
+      dof_handler.locally_owned_dofs(), locally_relevant_dofs, communicator);
     locate_nodes();
   }
 
@@ -82,16 +101,26 @@ namespace impm
   void
   BackgroundGrid<dim>::locate_nodes()
   {
-    positions.resize(
-      (partitioner->locally_owned_size() + partitioner->n_ghost_indices()) /
-      dim);
+    // Through a vector, for nodes that belong to no cell of this rank.
+    Vector coordinates;
+    initialize(coordinates);
     for (const auto &cell : dof_handler.active_cell_iterators())
       if (!cell->is_artificial())
         {
           const auto nodes = nodes_of(cell);
           for (const unsigned int v : cell->vertex_indices())
-            positions[nodes[v]] = cell->vertex(v);
+            for (unsigned int d = 0; d < dim; ++d)
+              coordinates.local_element(dim * nodes[v] + d) =
+                cell->vertex(v)[d];
         }
+    coordinates.zero_out_ghost_values();
+    coordinates.update_ghost_values();
+    positions.resize(
+      (partitioner->locally_owned_size() + partitioner->n_ghost_indices()) /
+      dim);
+    for (unsigned int n = 0; n < positions.size(); ++n)
+      for (unsigned int d = 0; d < dim; ++d)
+        positions[n][d] = coordinates.local_element(dim * n + d);
   }
 
   template <int dim>

@@ -1,73 +1,206 @@
 #include <impm/footprints.h>
 
+#include <numeric>
+
 namespace impm
 {
   using namespace dealii;
 
   template <int dim>
   void
-  Footprints<dim>::build(const MaterialPoints<dim> &points,
-                         const BackgroundGrid<dim> &grid)
+  Footprints<dim>::box_shape(const Piece &piece,
+                             double      *values,
+                             double      *gradients)
   {
-    cells.clear();
-    point.clear();
-    const unsigned int n_points = points.size();
-    values.resize(n_points * n_nodes);
-    gradients.resize(n_points * n_nodes * dim);
-    const bool axisymmetric =
-      points.layout.geometry == GeometryKind::axisymmetric;
-    inverse_radius.resize(axisymmetric ? n_points : 0);
-
-    std::array<double, dim>                    extents{};
-    unsigned int                               p = 0;
-    typename Triangulation<dim>::cell_iterator current;
-    for (const auto &particle : points.sorted.particles)
+    std::array<double, dim> extents;
+    for (unsigned int d = 0; d < dim; ++d)
+      extents[d] = piece.cell->extent_in_direction(d);
+    for (unsigned int v = 0; v < n_nodes; ++v)
       {
-        const auto cell = particle.get_surrounding_cell();
-        if (p == 0 || cell != current)
+        double                  value = piece.weight;
+        std::array<double, dim> factor;
+        for (unsigned int d = 0; d < dim; ++d)
           {
-            current = cell;
-            const typename BackgroundGrid<dim>::CellIterator dof_cell(
-              &grid.triangulation,
-              cell->level(),
-              cell->index(),
-              &grid.dof_handler);
-            for (unsigned int d = 0; d < dim; ++d)
-              extents[d] = cell->extent_in_direction(d);
-            cells.push_back(
-              {dof_cell,
-               grid.nodes_of(dof_cell),
-               p,
-               p,
-               *std::min_element(extents.begin(), extents.end())});
+            factor[d] =
+              (v >> d & 1u) ? piece.centroid[d] : 1 - piece.centroid[d];
+            value *= factor[d];
           }
-        cells.back().end = p + 1;
-        point.push_back(p);
-
-        const auto &xi = particle.get_reference_location();
-        for (unsigned int v = 0; v < n_nodes; ++v)
+        values[v] = value;
+        for (unsigned int d = 0; d < dim; ++d)
           {
-            double                  value = 1;
-            std::array<double, dim> factor;
-            for (unsigned int d = 0; d < dim; ++d)
-              {
-                factor[d] = (v >> d & 1u) ? xi[d] : 1 - xi[d];
-                value *= factor[d];
-              }
-            values[p * n_nodes + v] = value;
-            for (unsigned int d = 0; d < dim; ++d)
-              {
-                double slope = ((v >> d & 1u) ? 1 : -1) / extents[d];
-                for (unsigned int e = 0; e < dim; ++e)
-                  if (e != d)
-                    slope *= factor[e];
-                gradients[(p * n_nodes + v) * dim + d] = slope;
-              }
+            double slope = piece.weight * ((v >> d & 1u) ? 1 : -1) / extents[d];
+            for (unsigned int e = 0; e < dim; ++e)
+              if (e != d)
+                slope *= factor[e];
+            gradients[v * dim + d] = slope;
           }
-        if (axisymmetric)
-          inverse_radius[p] = 1 / particle.get_location()[0];
-        ++p;
       }
+  }
+
+  template <int dim>
+  void
+  Footprints<dim>::build(const std::vector<Piece>  &pieces,
+                         const unsigned int         n_points,
+                         const BackgroundGrid<dim> &grid,
+                         const Shape               &shape)
+  {
+    this->n_points                = n_points;
+    const unsigned int n          = pieces.size();
+    const unsigned int no_slot    = numbers::invalid_unsigned_int;
+    const auto         slot_place = [&](const CellIterator &cell) -> auto &
+    {
+      return slot_of_cell[cell->active_cell_index()];
+    };
+
+    // Cells in the order in which they appear, and how many entries each has.
+    slot_of_cell.resize(grid.triangulation.n_active_cells(), no_slot);
+    cells.clear();
+    cell_of_entry.resize(n);
+    for (unsigned int i = 0; i < n; ++i)
+      {
+        const auto   &cell = pieces[i].cell;
+        unsigned int &slot = slot_place(cell);
+        if (slot == no_slot)
+          {
+            slot          = cells.size();
+            double extent = cell->extent_in_direction(0);
+            for (unsigned int d = 1; d < dim; ++d)
+              extent = std::min(extent, cell->extent_in_direction(d));
+            cells.push_back({cell, grid.nodes_of(cell), 0, 0, extent});
+          }
+        ++cells[slot].end;
+      }
+    unsigned int sum = 0;
+    for (auto &cell : cells)
+      {
+        cell.begin = sum;
+        sum += cell.end;
+        cell.end = cell.begin;
+      }
+
+    point.resize(n);
+    weight.resize(n);
+    values.resize(n * n_nodes);
+    gradients.resize(n * n_nodes * dim);
+    first.assign(n_points + 1, 0);
+    for (const auto &piece : pieces)
+      {
+        const unsigned int slot = slot_place(piece.cell);
+        const unsigned int e    = cells[slot].end++;
+        cell_of_entry[e]        = slot;
+        point[e]                = piece.point;
+        weight[e]               = piece.weight;
+        shape(piece, &values[e * n_nodes], &gradients[e * n_nodes * dim]);
+        ++first[piece.point + 1];
+      }
+    for (const auto &cell : cells)
+      slot_place(cell.cell) = no_slot;
+
+    one_entry_each =
+      n == n_points && std::all_of(first.begin() + 1,
+                                   first.end(),
+                                   [](const unsigned int k) { return k == 1; });
+    std::partial_sum(first.begin(), first.end(), first.begin());
+    entries.resize(n);
+    order.assign(first.begin(), first.end());
+    for (unsigned int e = 0; e < n; ++e)
+      entries[order[point[e]]++] = e;
+  }
+
+  template <int dim>
+  void
+  Footprints<dim>::make_patches(const std::vector<unsigned int> &coupled)
+  {
+    patches.clear();
+    patch_points.resize(n_points);
+    std::iota(patch_points.begin(), patch_points.end(), 0);
+    patch_nodes.clear();
+    place.resize(n_entries() * n_nodes);
+
+    const auto is_coupled = [&](const unsigned int p) {
+      return !coupled.empty() && coupled[p] != numbers::invalid_unsigned_int;
+    };
+    // Less than, and equal, by the cells of the points.
+    const auto compare = [&](const unsigned int p, const unsigned int q) {
+      if (is_coupled(p) || is_coupled(q))
+        return is_coupled(p) && is_coupled(q) ?
+                 (coupled[p] > coupled[q]) - (coupled[p] < coupled[q]) :
+                 is_coupled(p) - is_coupled(q);
+      for (unsigned int i = first[p], j = first[q];; ++i, ++j)
+        {
+          if (i == first[p + 1] || j == first[q + 1])
+            return (i != first[p + 1]) - (j != first[q + 1]);
+          const unsigned int a = cell_of_entry[entries[i]],
+                             b = cell_of_entry[entries[j]];
+          if (a != b)
+            return (a > b) - (a < b);
+        }
+    };
+    if (!one_entry_each || !coupled.empty())
+      std::sort(patch_points.begin(),
+                patch_points.end(),
+                [&](const unsigned int p, const unsigned int q) {
+                  const int order = compare(p, q);
+                  return order != 0 ? order < 0 : p < q;
+                });
+
+    for (unsigned int i = 0; i < n_points;)
+      {
+        Patch patch;
+        patch.begin_points = i;
+        patch.begin_nodes  = patch_nodes.size();
+        for (; i < n_points && (i == patch.begin_points ||
+                                compare(patch_points[patch.begin_points],
+                                        patch_points[i]) == 0);
+             ++i)
+          {
+            const unsigned int p = patch_points[i];
+            for (unsigned int k = first[p]; k < first[p + 1]; ++k)
+              {
+                const unsigned int e     = entries[k];
+                const auto        &nodes = cells[cell_of_entry[e]].nodes;
+                for (unsigned int v = 0; v < n_nodes; ++v)
+                  {
+                    const auto begin = patch_nodes.begin() + patch.begin_nodes;
+                    const auto found =
+                      std::find(begin, patch_nodes.end(), nodes[v]);
+                    place[e * n_nodes + v] = found - begin;
+                    if (found == patch_nodes.end())
+                      patch_nodes.push_back(nodes[v]);
+                  }
+              }
+          }
+        patch.end_points = i;
+        patch.end_nodes  = patch_nodes.size();
+        patches.push_back(patch);
+      }
+  }
+
+  template <int dim>
+  void
+  Footprints<dim>::interpolate(const Vector                &field,
+                               std::vector<Tensor<1, dim>> &at_points) const
+  {
+    at_points.assign(n_points, Tensor<1, dim>());
+    for (const auto &cell : cells)
+      for (unsigned int e = cell.begin; e < cell.end; ++e)
+        for (unsigned int n = 0; n < n_nodes; ++n)
+          for (unsigned int d = 0; d < dim; ++d)
+            at_points[point[e]][d] +=
+              value(e)[n] * field.local_element(dim * cell.nodes[n] + d);
+  }
+
+  template <int dim>
+  void
+  Footprints<dim>::spread(const std::vector<Tensor<1, dim>> &at_points,
+                          Vector                            &field) const
+  {
+    for (const auto &cell : cells)
+      for (unsigned int e = cell.begin; e < cell.end; ++e)
+        for (unsigned int n = 0; n < n_nodes; ++n)
+          for (unsigned int d = 0; d < dim; ++d)
+            field.local_element(dim * cell.nodes[n] + d) +=
+              value(e)[n] * at_points[point[e]][d];
   }
 
   template class Footprints<2>;

@@ -33,29 +33,18 @@ namespace impm
 
   template <int dim>
   void
-  GhostPenalty<dim>::build(const Footprints<dim>     &footprints,
-                           const MaterialPoints<dim> &points,
+  GhostPenalty<dim>::build(const PopulatedCells<dim> &populated_cells,
                            const BackgroundGrid<dim> &grid,
+                           const GeometryKind         geometry,
                            const double               gamma)
   {
     faces.clear();
     if (gamma == 0)
       return;
 
-    // Stiffness of every cell, zero where there is no material.
-    std::vector<double> stiffness(grid.triangulation.n_active_cells());
-    for (const auto &cell : footprints.cells)
-      {
-        double smallest = std::numeric_limits<double>::max();
-        for (unsigned int e = cell.begin; e < cell.end; ++e)
-          smallest = std::min(smallest,
-                              points.material(footprints.point[e]).stiffness());
-        stiffness[cell.cell->active_cell_index()] = smallest;
-      }
-    exchange_cell_data(grid, stiffness);
-
+    const auto         &stiffness = populated_cells.stiffness;
     std::vector<double> at_edge(stiffness.size());
-    for (const auto &cell : footprints.cells)
+    for (const auto &cell : populated_cells.cells)
       for_each_neighbor<dim>(cell.cell, [&](const auto &neighbor) {
         if (stiffness[neighbor->active_cell_index()] == 0)
           at_edge[cell.cell->active_cell_index()] = 1;
@@ -70,10 +59,9 @@ namespace impm
     FEFaceValues<dim>      there(grid.mapping, fe, quadrature, flags);
     FESubfaceValues<dim>   there_coarser(grid.mapping, fe, quadrature, flags);
     constexpr unsigned int half = max_nodes / 2;
-    const bool             axisymmetric =
-      points.layout.geometry == GeometryKind::axisymmetric;
+    const bool axisymmetric     = geometry == GeometryKind::axisymmetric;
 
-    for (const auto &populated : footprints.cells)
+    for (const auto &populated : populated_cells.cells)
       for (const unsigned int f : populated.cell->face_indices())
         {
           const auto &cell = populated.cell;

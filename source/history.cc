@@ -126,7 +126,8 @@ namespace impm
     for (const auto &reaction : scene.output.reactions)
       file << ',' << reaction.name;
     file
-      << ",residual,tangent_projections,solver_fallbacks,noise_stops,held_cells"
+      << ",residual,tangent_projections,solver_fallbacks,noise_stops,held_cells,"
+         "limited_boxes"
       << std::endl;
     if (!file)
       throw SystemError("cannot write '" + directory + "/history.csv'");
@@ -220,7 +221,7 @@ namespace impm
     const auto totals   = total(points);
     const auto n_points = points.sorted.n_global();
     const auto active_cells =
-      Utilities::MPI::sum<unsigned int>(balance.footprints().cells.size(),
+      Utilities::MPI::sum<unsigned int>(balance.populated.cells.size(),
                                         points.communicator);
     figures.clear();
     for (unsigned int i = 0; i < scene.output.probes.size(); ++i)
@@ -246,7 +247,7 @@ namespace impm
       file << ',' << figure.second;
     file << ',' << report.residual << ',' << report.projections << ','
          << report.solver_fallbacks << ',' << report.noise_stops << ','
-         << report.held_cells << std::endl;
+         << report.held_cells << ',' << report.limited_boxes << std::endl;
     if (!file)
       throw SystemError("cannot write the history (disk full?)");
   }

@@ -15,11 +15,11 @@ namespace impm
      */
     template <int dim>
     std::vector<double>
-    label_pieces(const Footprints<dim>     &footprints,
+    label_pieces(const PopulatedCells<dim> &populated,
                  const BackgroundGrid<dim> &grid)
     {
       std::vector<double> label(grid.triangulation.n_active_cells());
-      for (const auto &cell : footprints.cells)
+      for (const auto &cell : populated.cells)
         label[cell.cell->active_cell_index()] =
           1. + cell.cell->global_active_cell_index();
       for (bool changed = true; changed;)
@@ -29,7 +29,7 @@ namespace impm
           for (bool again = true; again; changed = changed || again)
             {
               again = false;
-              for (const auto &cell : footprints.cells)
+              for (const auto &cell : populated.cells)
                 {
                   double &own = label[cell.cell->active_cell_index()];
                   for_each_neighbor<dim>(cell.cell, [&](const auto &neighbor) {
@@ -50,17 +50,17 @@ namespace impm
 
   template <int dim>
   std::vector<char>
-  find_isolated_cells(const Footprints<dim>      &footprints,
+  find_isolated_cells(const PopulatedCells<dim>  &populated,
                       const BackgroundGrid<dim>  &grid,
                       const StepConstraints<dim> &constraints,
                       const bool                  axisymmetric)
   {
-    const auto label = label_pieces(footprints, grid);
+    const auto label = label_pieces(populated, grid);
 
     // Directions, as bits, in which something holds a piece; the hoop strain
     // does along the radius.
     std::map<double, unsigned int> held;
-    for (const auto &cell : footprints.cells)
+    for (const auto &cell : populated.cells)
       {
         unsigned int &bits = held[label[cell.cell->active_cell_index()]];
         if (axisymmetric)
@@ -73,23 +73,24 @@ namespace impm
     for (const auto &others :
          Utilities::MPI::all_gather(grid.communicator, held))
       for (const auto &[piece, bits] : others)
-        if (held.count(piece) > 0)
-          held[piece] |= bits;
+        held[piece] |= bits;
 
-    std::vector<char> isolated;
-    for (const auto &cell : footprints.cells)
-      isolated.push_back(held[label[cell.cell->active_cell_index()]] !=
-                         (1u << dim) - 1);
+    std::vector<char> isolated(label.size());
+    for (unsigned int i = 0; i < label.size(); ++i)
+      {
+        const auto piece = held.find(label[i]);
+        isolated[i] = piece != held.end() && piece->second != (1u << dim) - 1;
+      }
     return isolated;
   }
 
   template std::vector<char>
-  find_isolated_cells(const Footprints<2> &,
+  find_isolated_cells(const PopulatedCells<2> &,
                       const BackgroundGrid<2> &,
                       const StepConstraints<2> &,
                       bool);
   template std::vector<char>
-  find_isolated_cells(const Footprints<3> &,
+  find_isolated_cells(const PopulatedCells<3> &,
                       const BackgroundGrid<3> &,
                       const StepConstraints<3> &,
                       bool);

@@ -88,6 +88,12 @@ namespace impm
           body.material->declare_history(history);
       return history;
     }
+
+    unsigned int
+    offset_or_zero(const PointLayout &layout, const std::string &name)
+    {
+      return layout.has(name) ? layout.offset(name) : 0;
+    }
   } // namespace
 
   template <int dim>
@@ -112,9 +118,15 @@ namespace impm
                   });
     if (scene.has_inertia())
       layout.add("velocity", Kind::vector);
-    if (wants_displacement)
+    if (scene.time.keeps_acceleration)
+      layout.add("acceleration", Kind::vector);
+    if (scene.has_inertia() && scene.time.transfer == TransferKind::apic)
+      for (unsigned int d = 0; d < dim; ++d)
+        layout.add(std::string("velocity_gradient_") + "xyz"[d], Kind::vector);
+    if (wants_displacement || scene.body_force_is_initial)
       layout.add("initial_position", Kind::vector);
-    if (std::any_of(output.probes.begin(),
+    if (scene.grid.method == GridMethod::gimp ||
+        std::any_of(output.probes.begin(),
                     output.probes.end(),
                     [](const ProbeSpec &probe) {
                       return probe.kind == ProbeSpec::Kind::extent;
@@ -135,7 +147,10 @@ namespace impm
     , sorted(grid, layout.size())
     , offset_deformation(layout.offset("deformation_gradient"))
     , offset_history(layout.size() - history_of(scene).size())
-    , offset_velocity(scene.has_inertia() ? layout.offset("velocity") : 0)
+    , offset_velocity(offset_or_zero(layout, "velocity"))
+    , offset_acceleration(offset_or_zero(layout, "acceleration"))
+    , offset_affine(offset_or_zero(layout, "velocity_gradient_x"))
+    , offset_initial_position(offset_or_zero(layout, "initial_position"))
     , history_layout(history_of(scene))
     , communicator(grid.communicator)
   {
@@ -152,6 +167,7 @@ namespace impm
         sorted.insert(
           seed_body(scene, body, grid),
           [&](const Seed<dim> &seed, double *values) {
+            std::fill_n(values, layout.size(), 0.);
             values[layout.offset("body")]           = b;
             values[layout.offset("initial_volume")] = seed.volume;
             layout.store_tensor(identity, values + offset_deformation);

@@ -109,6 +109,18 @@ namespace impm
                         "10, 10",
                         Patterns::List(Patterns::Integer(1), 2, 3),
                         "Number of cells in each direction.");
+      prm.declare_entry("Method",
+                        "MPM",
+                        Patterns::Selection("MPM|GIMP"),
+                        "What a material point is to the grid. MPM: a place. "
+                        "GIMP: a box, so that forces change smoothly when "
+                        "it crosses into the next cell.");
+      if (may_be(chosen("Grid/Method", "MPM"), "GIMP"))
+        prm.declare_entry("Boxes",
+                          "stretched",
+                          Patterns::Selection("stretched|fixed"),
+                          "Whether the boxes of the points stretch with them "
+                          "(with the diagonal of U).");
       prm.declare_entry("Local refinements",
                         "0",
                         Patterns::Integer(0, 10),
@@ -144,6 +156,12 @@ namespace impm
           for (const auto &entry : laws)
             if (entry.name == law)
               entry.declare(prm);
+          prm.declare_entry("F-bar",
+                            "false",
+                            Patterns::Bool(),
+                            "The points of a cell share its change of volume, "
+                            "against locking of materials that hardly change "
+                            "theirs.");
           prm.leave_subsection();
         }
       prm.leave_subsection();
@@ -250,7 +268,7 @@ namespace impm
     }
 
     void
-    declare_loads(ParameterHandler &prm)
+    declare_loads(ParameterHandler &prm, const ParameterFile::Chosen &chosen)
     {
       prm.enter_subsection("Loads");
       prm.declare_entry("Body force",
@@ -259,6 +277,12 @@ namespace impm
                         "Force per mass (m/s^2): expressions in x, y, z, t, "
                         "one for each direction, between semicolons; empty: "
                         "none.");
+      if (!chosen("Loads/Body force", "").empty())
+        prm.declare_entry("Coordinates",
+                          "current",
+                          Patterns::Selection("current|initial"),
+                          "Whether x, y, z in the body force are where a point "
+                          "is or where it was at the start.");
       prm.leave_subsection();
     }
 
@@ -268,15 +292,41 @@ namespace impm
       prm.enter_subsection("Time");
       prm.declare_entry("Integrator",
                         "quasi-static",
-                        Patterns::Selection("quasi-static|theta"),
+                        Patterns::Selection("quasi-static|theta|Newmark"),
                         "Quasi-static: no inertia. Theta: Sulsky & Kaul "
-                        "(2004), eq. 2.4.1.");
-      if (may_be(chosen("Time/Integrator", "quasi-static"), "theta"))
+                        "(2004), eq. 2.4.1. Newmark: Guilkey & Weiss (2003).");
+      const auto integrator = chosen("Time/Integrator", "quasi-static");
+      if (may_be(integrator, "Newmark"))
+        {
+          prm.declare_entry("Beta",
+                            "0.25",
+                            Patterns::Double(0.01, 0.5),
+                            "Weight of the acceleration at the end in the "
+                            "displacement; 0.25: trapezoidal.");
+          prm.declare_entry("Gamma",
+                            "0.5",
+                            Patterns::Double(0.5, 1),
+                            "The same in the velocity; above 0.5 it damps.");
+          prm.declare_entry("Acceleration from",
+                            "grid",
+                            Patterns::Selection("grid|points"),
+                            "At the start of a step: from the forces on the "
+                            "grid as it is, or as the points carry it (Guilkey "
+                            "& Weiss 2003), which loses energy in long steps.");
+        }
+      if (may_be(integrator, "theta"))
         prm.declare_entry("Theta",
                           "1",
                           Patterns::Double(0.5, 1),
                           "Weight of the forces at the end of the step; 1: "
                           "backward Euler, 0.5: trapezoidal.");
+      if (integrator != "quasi-static")
+        prm.declare_entry("Transfer",
+                          "FLIP",
+                          Patterns::Selection("FLIP|PIC|APIC"),
+                          "Velocities of points: they take the change of the "
+                          "grid's (FLIP), its value (PIC, which damps), or its "
+                          "value and gradient (APIC).");
       prm.declare_entry("End time",
                         "1",
                         Patterns::Double(tiny),
@@ -515,7 +565,7 @@ namespace impm
       declare_body(prm, chosen, name);
     prm.leave_subsection();
     declare_faces(prm, chosen);
-    declare_loads(prm);
+    declare_loads(prm, chosen);
     declare_time(prm, chosen);
     declare_solver(prm, chosen);
     declare_stabilization(prm, chosen);

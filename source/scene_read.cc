@@ -68,6 +68,11 @@ namespace impm
                                "', allowed is a corner above 'Lower corner' "
                                "in every direction");
         }
+      if (prm.get("Method") == "GIMP")
+        {
+          grid.method        = GridMethod::gimp;
+          grid.boxes_stretch = prm.get("Boxes") == "stretched";
+        }
       grid.refinement_levels = prm.get_integer("Local refinements");
       if (grid.refinement_levels > 0)
         grid.refine_where =
@@ -161,6 +166,19 @@ namespace impm
       time.integrator = prm.get("Integrator");
       if (time.integrator == "theta")
         time.theta = prm.get_double("Theta");
+      if (time.integrator == "Newmark")
+        {
+          time.beta               = prm.get_double("Beta");
+          time.gamma              = prm.get_double("Gamma");
+          time.keeps_acceleration = prm.get("Acceleration from") == "points";
+        }
+      if (time.integrator != "quasi-static")
+        {
+          const std::string transfer = prm.get("Transfer");
+          time.transfer              = transfer == "FLIP" ? TransferKind::flip :
+                                       transfer == "PIC"  ? TransferKind::pic :
+                                                            TransferKind::apic;
+        }
       time.end          = prm.get_double("End time");
       time.step         = prm.get_double("Time step");
       time.growth       = prm.get_double("Growth");
@@ -394,6 +412,7 @@ namespace impm
           for (const auto &entry : material_list())
             if (entry.name == prm.get("Law"))
               materials[name] = entry.create(prm);
+          materials[name]->average_volume = prm.get_bool("F-bar");
         });
     });
     in_section(prm, "Time", [&]() { scene.time = read_time(prm); });
@@ -424,6 +443,8 @@ namespace impm
     in_section(prm, "Loads", [&]() {
       scene.body_force =
         read_expressions<dim>(prm, "Body force", dim, true, scene.constants);
+      scene.body_force_is_initial =
+        scene.body_force && prm.get("Coordinates") == "initial";
     });
     in_section(prm, "Solver", [&]() { scene.solver = read_solver(prm); });
     in_section(prm, "Stabilization", [&]() {

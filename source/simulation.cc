@@ -49,7 +49,8 @@ namespace impm
     , step_size(scene.time.step)
   {
     grid.initialize(u);
-    grid.initialize(velocity_change);
+    grid.initialize(end_velocity);
+    grid.initialize(end_acceleration);
   }
 
   template <int dim>
@@ -181,6 +182,8 @@ namespace impm
       }
     report.solver_fallbacks = linear_solver.n_fallbacks - before;
     report.held_cells       = balance.n_held_cells;
+    report.limited_boxes =
+      Utilities::MPI::sum(balance.n_limited_boxes(), communicator);
     report.external_work += external_work_of_step();
     history.take_reactions();
     commit();
@@ -224,16 +227,9 @@ namespace impm
   Simulation<dim>::commit()
   {
     TimerOutput::Scope scope(timer, "move points and grid");
-    if (integrator->has_inertia())
-      {
-        integrator->end_velocity(report.dt,
-                                 u,
-                                 balance.velocity,
-                                 velocity_change);
-        velocity_change -= balance.velocity;
-        balance.constraints.interpolate_hanging(velocity_change);
-      }
-    advance_points(balance, u, velocity_change, points);
+    balance.end_motion(u, end_velocity, end_acceleration);
+    advance_points(
+      balance, scene.time.transfer, u, end_velocity, end_acceleration, points);
     bool grid_moves = false;
     for (unsigned int f = 0; f < 2 * dim; ++f)
       if (scene.faces[f].moves_grid)
@@ -291,7 +287,7 @@ namespace impm
                {"solver_fallbacks", linear_solver.n_fallbacks},
                {"noise_stops", sums.noise_stops},
                {"stress_evaluations",
-                Utilities::MPI::sum(balance.n_stress_evaluations, communicator)},
+                Utilities::MPI::sum(balance.response.n_evaluations, communicator)},
                {"operator_applications", balance.n_operator_applications}};
     summary.figures      = history.last_figures();
     summary.phases       = timer.get_summary_data(TimerOutput::total_wall_time);

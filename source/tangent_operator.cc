@@ -1,6 +1,5 @@
 // The tangent of MomentumBalance: as an operator, its diagonal, its matrix.
 
-#include <deal.II/lac/lapack_full_matrix.h>
 #include <deal.II/lac/trilinos_sparsity_pattern.h>
 
 #include <impm/momentum_balance.h>
@@ -11,52 +10,11 @@ namespace impm
 
   template <int dim>
   void
-  MomentumBalance<dim>::project_tangent()
-  {
-    LAPACKFullMatrix<double> matrix(n_gradients);
-    FullMatrix<double>       vectors(n_gradients);
-    dealii::Vector<double>   values;
-    for (unsigned int p = 0; p < points.size(); ++p)
-      {
-        double *A = &tangents[p * n_gradients * n_gradients];
-        matrix.reinit(n_gradients);
-        for (unsigned int a = 0; a < n_gradients; ++a)
-          for (unsigned int b = 0; b < n_gradients; ++b)
-            matrix(a, b) =
-              0.5 * (A[a * n_gradients + b] + A[b * n_gradients + a]);
-        const double bound = matrix.frobenius_norm();
-        matrix.compute_eigenvalues_symmetric(
-          -2 * bound, 2 * bound, 1e-14 * bound, values, vectors);
-        if (values.size() < n_gradients || values[0] >= 0)
-          continue;
-        std::fill(A, A + n_gradients * n_gradients, 0.);
-        for (unsigned int k = 0; k < n_gradients; ++k)
-          for (unsigned int a = 0; a < n_gradients; ++a)
-            for (unsigned int b = 0; b < n_gradients; ++b)
-              A[a * n_gradients + b] +=
-                std::max(values[k], 0.) * vectors(a, k) * vectors(b, k);
-      }
-  }
-
-  template <int dim>
-  void
   MomentumBalance<dim>::apply_tangent(Vector &dst, const Vector &src) const
   {
     ++n_operator_applications;
     gradients_at_points(src, gradient_increments);
-    for (unsigned int p = 0; p < points.size(); ++p)
-      {
-        const double *A = &tangents[p * n_gradients * n_gradients];
-        const double *g = &gradient_increments[p * n_gradients];
-        double       *s = &stress_increments[p * n_gradients];
-        for (unsigned int a = 0; a < n_gradients; ++a)
-          {
-            double sum = 0;
-            for (unsigned int b = 0; b < n_gradients; ++b)
-              sum += A[a * n_gradients + b] * g[b];
-            s[a] = sum;
-          }
-      }
+    response.apply_tangent(gradient_increments, stress_increments);
     dst = 0;
     add_point_forces(stress_increments, dst);
     ghost.add_force(src, 1., dst);
@@ -92,61 +50,153 @@ namespace impm
   }
 
   template <int dim>
+  template <typename Size>
   void
-  MomentumBalance<dim>::cell_matrix(const typename Footprints<dim>::Cell &cell,
-                                    FullMatrix<double> &matrix) const
+  MomentumBalance<dim>::add_points(const Patch        &patch,
+                                   const Size          n_patch_nodes,
+                                   FullMatrix<double> &matrix) const
   {
     constexpr unsigned int n_nodes = Footprints<dim>::n_nodes;
-    constexpr unsigned int n       = n_nodes * dim;
-    matrix                         = 0;
-    // rows of A B: one per value of a gradient, one column per unknown
-    std::array<std::array<double, n>, dim * dim + 1> AB;
-    for (unsigned int e = cell.begin; e < cell.end; ++e)
+    for (unsigned int i = patch.begin_points; i < patch.end_points; ++i)
       {
-        const unsigned int p     = prints.point[e];
-        const double      *slope = prints.gradient(e);
-        const double      *A     = &tangents[p * n_gradients * n_gradients];
+        const unsigned int p     = prints.patch_points[i];
+        const unsigned int begin = prints.first[p], end = prints.first[p + 1];
+        const double      *A     = response.tangent(p);
+        const double      *slope = slopes.data();
+        const double      *share = shares.data();
         const double       inverse_radius =
           axisymmetric ? prints.inverse_radius[p] : 0.;
-        for (unsigned int a = 0; a < n_gradients; ++a)
-          for (unsigned int m = 0; m < n_nodes; ++m)
-            for (unsigned int c = 0; c < dim; ++c)
-              {
-                double sum = 0;
-                for (unsigned int d = 0; d < dim; ++d)
-                  sum += A[a * n_gradients + dim * c + d] * slope[dim * m + d];
-                if (axisymmetric && c == 0)
-                  sum += A[a * n_gradients + dim * dim] * prints.value(e)[m] *
-                         inverse_radius;
-                AB[a][dim * m + c] = sum;
-              }
-        for (unsigned int m = 0; m < n_nodes; ++m)
+        if (end == begin + 1 && n_patch_nodes == n_nodes)
+          {
+            slope = prints.gradient(prints.entries[begin]);
+            share = prints.value(prints.entries[begin]);
+          }
+        else
+          {
+            std::fill(slopes.begin(), slopes.end(), 0.);
+            std::fill(shares.begin(), shares.end(), 0.);
+            for (unsigned int k = begin; k < end; ++k)
+              for (unsigned int v = 0; v < n_nodes; ++v)
+                {
+                  const unsigned int e = prints.entries[k];
+                  const unsigned int m = prints.place[e * n_nodes + v];
+                  shares[m] += prints.value(e)[v];
+                  for (unsigned int d = 0; d < dim; ++d)
+                    slopes[dim * m + d] += prints.gradient(e)[dim * v + d];
+                }
+          }
+        // rows of A B: one per value of a gradient, one column per unknown
+        for (unsigned int m = 0; m < n_patch_nodes; ++m)
           for (unsigned int c = 0; c < dim; ++c)
-            for (unsigned int j = 0; j < n; ++j)
-              {
-                double sum = 0;
-                for (unsigned int d = 0; d < dim; ++d)
-                  sum += slope[dim * m + d] * AB[dim * c + d][j];
-                if (axisymmetric && c == 0)
-                  sum += prints.value(e)[m] * inverse_radius * AB[dim * dim][j];
-                matrix(dim * m + c, j) += sum;
-              }
+            {
+              typename Kinematics<dim>::List AB;
+              for (unsigned int a = 0; a < n_gradients; ++a)
+                {
+                  double sum = 0;
+                  for (unsigned int d = 0; d < dim; ++d)
+                    sum +=
+                      A[a * n_gradients + dim * c + d] * slope[dim * m + d];
+                  if (axisymmetric && c == 0)
+                    sum += A[a * n_gradients + dim * dim] * share[m] *
+                           inverse_radius;
+                  AB[a] = sum;
+                }
+              for (unsigned int l = 0; l < n_patch_nodes; ++l)
+                for (unsigned int b = 0; b < dim; ++b)
+                  {
+                    double sum = 0;
+                    for (unsigned int d = 0; d < dim; ++d)
+                      sum += slope[dim * l + d] * AB[dim * b + d];
+                    if (axisymmetric && b == 0)
+                      sum += share[l] * inverse_radius * AB[dim * dim];
+                    matrix(dim * l + b, dim * m + c) += sum;
+                  }
+            }
       }
+  }
+
+  template <int dim>
+  void
+  MomentumBalance<dim>::add_coupling(const Patch        &patch,
+                                     FullMatrix<double> &matrix) const
+  {
+    const auto        &average = response.average;
+    const unsigned int first   = prints.patch_points[patch.begin_points];
+    if (!average.includes(first))
+      return;
+    // F-bar: nodal forces of the mean dilation and of what it does.
+    constexpr unsigned int n_nodes = Footprints<dim>::n_nodes;
+    const unsigned int     n       = matrix.m();
+    dealii::Vector<double> dilation(n), answer(n);
+    for (unsigned int i = patch.begin_points; i < patch.end_points; ++i)
+      {
+        const unsigned int p = prints.patch_points[i];
+        const double      *m = &average.mean[p * n_gradients];
+        const double      *b = &average.coupling[p * n_gradients];
+        for (unsigned int k = prints.first[p]; k < prints.first[p + 1]; ++k)
+          for (unsigned int v = 0; v < n_nodes; ++v)
+            {
+              const unsigned int e     = prints.entries[k];
+              const unsigned int l     = prints.place[e * n_nodes + v];
+              const double      *slope = prints.gradient(e) + dim * v;
+              for (unsigned int c = 0; c < dim; ++c)
+                for (unsigned int d = 0; d < dim; ++d)
+                  {
+                    dilation[dim * l + c] += m[dim * c + d] * slope[d];
+                    answer[dim * l + c] += b[dim * c + d] * slope[d];
+                  }
+              if (axisymmetric)
+                {
+                  const double share =
+                    prints.value(e)[v] * prints.inverse_radius[p];
+                  dilation[dim * l] += m[dim * dim] * share;
+                  answer[dim * l] += b[dim * dim] * share;
+                }
+            }
+      }
+    const double square = average.group_square[average.groups[first]];
+    for (unsigned int i = 0; i < n; ++i)
+      for (unsigned int j = 0; j < n; ++j)
+        matrix(i, j) += answer[i] * dilation[j] + dilation[i] * answer[j] +
+                        square * dilation[i] * dilation[j];
+  }
+
+  template <int dim>
+  void
+  MomentumBalance<dim>::patch_matrix(const Patch        &patch,
+                                     FullMatrix<double> &matrix) const
+  {
+    const unsigned int n = patch.end_nodes - patch.begin_nodes;
+    matrix.reinit(dim * n, dim * n);
+    slopes.resize(dim * n);
+    shares.resize(n);
+    // The most frequent number of nodes deserves loops that unroll.
+    constexpr unsigned int n_nodes = Footprints<dim>::n_nodes;
+    if (n == n_nodes)
+      add_points(patch,
+                 std::integral_constant<unsigned int, n_nodes>(),
+                 matrix);
+    else
+      add_points(patch, n, matrix);
+    add_coupling(patch, matrix);
   }
 
   template <int dim>
   void
   MomentumBalance<dim>::diagonal(Vector &diagonal) const
   {
-    FullMatrix<double> local(Footprints<dim>::n_nodes * dim);
+    FullMatrix<double> local;
     diagonal = 0;
-    for (const auto &cell : prints.cells)
+    for (const auto &patch : prints.patches)
       {
-        cell_matrix(cell, local);
-        for (unsigned int n = 0; n < Footprints<dim>::n_nodes; ++n)
+        patch_matrix(patch, local);
+        for (unsigned int n = patch.begin_nodes; n < patch.end_nodes; ++n)
           for (unsigned int c = 0; c < dim; ++c)
-            diagonal.local_element(dim * cell.nodes[n] + c) +=
-              local(dim * n + c, dim * n + c);
+            {
+              const unsigned int i = dim * (n - patch.begin_nodes) + c;
+              diagonal.local_element(dim * prints.patch_nodes[n] + c) +=
+                local(i, i);
+            }
       }
     for (const auto &face : ghost.faces)
       for (unsigned int a = 0; a < face.n_nodes; ++a)
@@ -162,21 +212,18 @@ namespace impm
         diagonal.local_element(i) += diagonal_stiffness(i);
   }
 
-  namespace
+  template <int dim>
+  std::vector<types::global_dof_index>
+  MomentumBalance<dim>::dofs_of_nodes(const unsigned int *begin,
+                                      const unsigned int *end) const
   {
-    /** The unknowns of a face, those of a node together. */
-    template <int dim>
-    std::vector<types::global_dof_index>
-    dofs_of(const typename GhostPenalty<dim>::Face &face, const Vector &vector)
-    {
-      std::vector<types::global_dof_index> dofs;
-      for (unsigned int a = 0; a < face.n_nodes; ++a)
-        for (unsigned int c = 0; c < dim; ++c)
-          dofs.push_back(
-            vector.get_partitioner()->local_to_global(dim * face.nodes[a] + c));
-      return dofs;
-    }
-  } // namespace
+    std::vector<types::global_dof_index> dofs;
+    for (; begin != end; ++begin)
+      for (unsigned int c = 0; c < dim; ++c)
+        dofs.push_back(
+          mass.get_partitioner()->local_to_global(dim * *begin + c));
+    return dofs;
+  }
 
   template <int dim>
   void
@@ -184,20 +231,20 @@ namespace impm
     TrilinosWrappers::SparseMatrix &matrix) const
   {
     const IndexSet &owned = grid.dof_handler.locally_owned_dofs();
-    TrilinosWrappers::SparsityPattern    sparsity(owned,
+    TrilinosWrappers::SparsityPattern sparsity(owned,
                                                owned,
                                                grid.locally_relevant_dofs,
                                                grid.communicator);
-    std::vector<types::global_dof_index> dofs(Footprints<dim>::n_nodes * dim);
-    for (const auto &cell : prints.cells)
-      {
-        cell.cell->get_dof_indices(dofs);
-        constraints.constraints.add_entries_local_to_global(dofs, sparsity);
-      }
-    for (const auto &face : ghost.faces)
-      constraints.constraints.add_entries_local_to_global(dofs_of<dim>(face,
-                                                                       mass),
+    const auto add = [&](const unsigned int *begin, const unsigned int *end) {
+      constraints.constraints.add_entries_local_to_global(dofs_of_nodes(begin,
+                                                                        end),
                                                           sparsity);
+    };
+    for (const auto &patch : prints.patches)
+      add(prints.patch_nodes.data() + patch.begin_nodes,
+          prints.patch_nodes.data() + patch.end_nodes);
+    for (const auto &face : ghost.faces)
+      add(face.nodes.data(), face.nodes.data() + face.n_nodes);
     for (const auto dof : owned)
       sparsity.add(dof, dof);
     sparsity.compress();
@@ -208,27 +255,27 @@ namespace impm
   void
   MomentumBalance<dim>::assemble(TrilinosWrappers::SparseMatrix &matrix) const
   {
-    constexpr unsigned int               n = Footprints<dim>::n_nodes * dim;
-    std::vector<types::global_dof_index> dofs(n);
-    FullMatrix<double>                   local(n), face_local;
-    matrix = 0;
-    for (const auto &cell : prints.cells)
+    FullMatrix<double> local;
+    matrix         = 0;
+    const auto add = [&](const unsigned int *begin, const unsigned int *end) {
+      local *= integrator.force_factor();
+      constraints.constraints.distribute_local_to_global(
+        local, dofs_of_nodes(begin, end), matrix);
+    };
+    for (const auto &patch : prints.patches)
       {
-        cell.cell->get_dof_indices(dofs);
-        cell_matrix(cell, local);
-        local *= integrator.force_factor();
-        constraints.constraints.distribute_local_to_global(local, dofs, matrix);
+        patch_matrix(patch, local);
+        add(prints.patch_nodes.data() + patch.begin_nodes,
+            prints.patch_nodes.data() + patch.end_nodes);
       }
     for (const auto &face : ghost.faces)
       {
-        face_local.reinit(dim * face.n_nodes, dim * face.n_nodes);
+        local.reinit(dim * face.n_nodes, dim * face.n_nodes);
         for (unsigned int a = 0; a < face.n_nodes; ++a)
           for (unsigned int b = 0; b < face.n_nodes; ++b)
             for (unsigned int c = 0; c < dim; ++c)
-              face_local(dim * a + c, dim * b + c) =
-                integrator.force_factor() * face.matrix[a][b];
-        constraints.constraints.distribute_local_to_global(
-          face_local, dofs_of<dim>(face, mass), matrix);
+              local(dim * a + c, dim * b + c) = face.matrix[a][b];
+        add(face.nodes.data(), face.nodes.data() + face.n_nodes);
       }
     matrix.compress(VectorOperation::add);
 

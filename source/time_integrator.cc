@@ -26,16 +26,21 @@ namespace impm
       }
 
       void
-      known_acceleration(double, const Vector &, Vector &known) const override
+      known_acceleration(double,
+                         const Vector &,
+                         const Vector &,
+                         Vector &known) const override
       {
         known = 0;
       }
 
       void
-      end_velocity(double,
-                   const Vector &,
-                   const Vector &,
-                   Vector &) const override
+      end_motion(double,
+                 const Vector &,
+                 const Vector &,
+                 const Vector &,
+                 Vector &,
+                 Vector &) const override
       {}
     };
 
@@ -71,22 +76,106 @@ namespace impm
       void
       known_acceleration(const double  dt,
                          const Vector &velocity,
-                         Vector       &known) const override
+                         const Vector &,
+                         Vector &known) const override
       {
         known.equ(1 / dt, velocity);
       }
 
       void
-      end_velocity(const double  dt,
-                   const Vector &u,
-                   const Vector &,
-                   Vector &velocity) const override
+      end_motion(const double  dt,
+                 const Vector &u,
+                 const Vector &,
+                 const Vector &,
+                 Vector &end_velocity,
+                 Vector &) const override
       {
-        velocity.equ(1 / dt, u);
+        end_velocity.equ(1 / dt, u);
       }
 
     private:
       const double theta;
+    };
+
+    /**
+     * Newmark's method (Guilkey & Weiss 2003, eq. 14 to 16, for beta = 1/4,
+     * gamma = 1/2):
+     *
+     *   u       = dt v + dt^2 ((1/2 - beta) a + beta a_end),
+     *   v_end   = v + dt ((1 - gamma) a + gamma a_end),
+     *   m a_end = -f(u).
+     *
+     * The acceleration a at the start is either what the points carry, or
+     * -f(0) / m on the grid as it is: then m a_end + f(u) = 0, divided by
+     * 1 / (2 beta), has no acceleration in it.
+     */
+    class Newmark : public TimeIntegrator
+    {
+    public:
+      Newmark(const double beta, const double gamma, const bool keeps)
+        : beta(beta)
+        , gamma(gamma)
+        , keeps(keeps)
+      {}
+
+      bool
+      has_inertia() const override
+      {
+        return true;
+      }
+
+      bool
+      keeps_acceleration() const override
+      {
+        return keeps;
+      }
+
+      double
+      mass_factor(const double dt) const override
+      {
+        return (keeps ? 1 / beta : 2) / (dt * dt);
+      }
+
+      double
+      force_factor() const override
+      {
+        return keeps ? 1 : 2 * beta;
+      }
+
+      void
+      known_acceleration(const double  dt,
+                         const Vector &velocity,
+                         const Vector &acceleration,
+                         Vector       &known) const override
+      {
+        if (keeps)
+          {
+            known.equ(1 / (beta * dt), velocity);
+            known.add(1 / (2 * beta) - 1, acceleration);
+          }
+        else
+          known.equ(2 / dt, velocity);
+      }
+
+      void
+      end_motion(const double  dt,
+                 const Vector &u,
+                 const Vector &velocity,
+                 const Vector &acceleration,
+                 Vector       &end_velocity,
+                 Vector       &end_acceleration) const override
+      {
+        end_acceleration.equ(1 / (beta * dt * dt), u);
+        end_acceleration.add(-1 / (beta * dt), velocity);
+        end_acceleration.add(1 - 1 / (2 * beta), acceleration);
+        end_velocity = velocity;
+        end_velocity.add(dt * (1 - gamma), acceleration);
+        end_velocity.add(dt * gamma, end_acceleration);
+      }
+
+    private:
+      const double beta, gamma;
+      const bool   keeps;
     };
   } // namespace
 
@@ -95,6 +184,10 @@ namespace impm
   {
     if (spec.integrator == "theta")
       return std::make_unique<Theta>(spec.theta);
+    if (spec.integrator == "Newmark")
+      return std::make_unique<Newmark>(spec.beta,
+                                       spec.gamma,
+                                       spec.keeps_acceleration);
     return std::make_unique<QuasiStatic>();
   }
 } // namespace impm

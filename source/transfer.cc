@@ -8,57 +8,195 @@ namespace impm
 
   namespace
   {
-    /** Sum of nodal values at an entry of the footprints. */
     template <int dim>
     Tensor<1, dim>
-    interpolate(const typename Footprints<dim>::Cell &cell,
-                const double                         *values,
-                const Vector                         &vector)
+    load_vector(const double *values)
     {
-      Tensor<1, dim> sum;
-      for (unsigned int n = 0; n < Footprints<dim>::n_nodes; ++n)
-        for (unsigned int d = 0; d < dim; ++d)
-          sum[d] += values[n] * vector.local_element(dim * cell.nodes[n] + d);
-      return sum;
+      Tensor<1, dim> vector;
+      for (unsigned int d = 0; d < dim; ++d)
+        vector[d] = values[d];
+      return vector;
+    }
+
+    template <int dim>
+    void
+    store_vector(const Tensor<1, dim> &vector, double *values)
+    {
+      for (unsigned int d = 0; d < dim; ++d)
+        values[d] = vector[d];
+    }
+
+    /**
+     * Momentum of the affine part: m_p S_I C_p (x_I - x_p), where x_p is what
+     * the footprint makes of the nodes' places, so that its sum is zero.
+     */
+    template <int dim>
+    void
+    add_affine_momentum(const MaterialPoints<dim> &points,
+                        const Footprints<dim>     &footprints,
+                        const BackgroundGrid<dim> &grid,
+                        Vector                    &momentum)
+    {
+      const auto                 &nodes = grid.node_positions();
+      std::vector<Tensor<1, dim>> centre(points.size());
+      for (const auto &cell : footprints.cells)
+        for (unsigned int e = cell.begin; e < cell.end; ++e)
+          for (unsigned int n = 0; n < Footprints<dim>::n_nodes; ++n)
+            centre[footprints.point[e]] +=
+              footprints.value(e)[n] * Tensor<1, dim>(nodes[cell.nodes[n]]);
+      for (const auto &cell : footprints.cells)
+        for (unsigned int e = cell.begin; e < cell.end; ++e)
+          {
+            const unsigned int p = footprints.point[e];
+            const double      *C = points.fields(p) + points.offset_affine;
+            for (unsigned int n = 0; n < Footprints<dim>::n_nodes; ++n)
+              {
+                const double share = points.mass(p) * footprints.value(e)[n];
+                for (unsigned int c = 0; c < dim; ++c)
+                  for (unsigned int d = 0; d < dim; ++d)
+                    momentum.local_element(dim * cell.nodes[n] + c) +=
+                      share * C[dim * c + d] *
+                      (nodes[cell.nodes[n]][d] - centre[p][d]);
+              }
+          }
+    }
+  } // namespace
+
+  template <int dim>
+  void
+  gather_motion(const MaterialPoints<dim>  &points,
+                const Footprints<dim>      &footprints,
+                const StepConstraints<dim> &constraints,
+                const BackgroundGrid<dim>  &grid,
+                Vector                     &mass,
+                Vector                     &velocity,
+                Vector                     &acceleration)
+  {
+    // Lumped; hanging nodes hand theirs to their masters, so that the sums
+    // over all nodes stay those over all points.
+    std::vector<Tensor<1, dim>> at_points(points.size());
+    const auto gather = [&](const auto &quantity, Vector &vector) {
+      for (unsigned int p = 0; p < points.size(); ++p)
+        at_points[p] = points.mass(p) * quantity(p);
+      vector = 0;
+      footprints.spread(at_points, vector);
+    };
+    const auto finish = [&](Vector &vector) {
+      vector.compress(VectorOperation::add);
+      constraints.condense_hanging(vector);
+    };
+    const auto divide_by_mass = [&](Vector &vector) {
+      for (unsigned int i = 0; i < mass.locally_owned_size(); ++i)
+        if (mass.local_element(i) > 0)
+          vector.local_element(i) /= mass.local_element(i);
+    };
+
+    Tensor<1, dim> ones;
+    for (unsigned int d = 0; d < dim; ++d)
+      ones[d] = 1;
+    gather([&](const unsigned int) { return ones; }, mass);
+    finish(mass);
+    gather(
+      [&](const unsigned int p) {
+        return load_vector<dim>(points.fields(p) + points.offset_velocity);
+      },
+      velocity);
+    if (points.offset_affine > 0)
+      add_affine_momentum(points, footprints, grid, velocity);
+    finish(velocity);
+    divide_by_mass(velocity);
+    if (points.offset_acceleration > 0)
+      {
+        gather(
+          [&](const unsigned int p) {
+            return load_vector<dim>(points.fields(p) +
+                                    points.offset_acceleration);
+          },
+          acceleration);
+        finish(acceleration);
+        divide_by_mass(acceleration);
+      }
+  }
+
+  namespace
+  {
+    template <int dim>
+    void
+    advance_velocities(const MomentumBalance<dim> &balance,
+                       const TransferKind          kind,
+                       const Vector               &end_velocity,
+                       MaterialPoints<dim>        &points)
+    {
+      const auto                 &footprints = balance.footprints();
+      std::vector<Tensor<1, dim>> at_points;
+      if (kind == TransferKind::flip)
+        {
+          Vector change = end_velocity;
+          change -= balance.velocity;
+          balance.constraints.interpolate_hanging(change);
+          footprints.interpolate(change, at_points);
+          for (unsigned int p = 0; p < points.size(); ++p)
+            at_points[p] +=
+              load_vector<dim>(points.fields(p) + points.offset_velocity);
+        }
+      else
+        footprints.interpolate(end_velocity, at_points);
+      for (unsigned int p = 0; p < points.size(); ++p)
+        store_vector<dim>(at_points[p],
+                          points.fields(p) + points.offset_velocity);
+      if (kind != TransferKind::apic)
+        return;
+      for (unsigned int p = 0; p < points.size(); ++p)
+        std::fill_n(points.fields(p) + points.offset_affine, dim * dim, 0.);
+      for (const auto &cell : footprints.cells)
+        for (unsigned int e = cell.begin; e < cell.end; ++e)
+          {
+            double *C =
+              points.fields(footprints.point[e]) + points.offset_affine;
+            for (unsigned int n = 0; n < Footprints<dim>::n_nodes; ++n)
+              for (unsigned int c = 0; c < dim; ++c)
+                for (unsigned int d = 0; d < dim; ++d)
+                  C[dim * c + d] +=
+                    end_velocity.local_element(dim * cell.nodes[n] + c) *
+                    footprints.gradient(e)[dim * n + d];
+          }
     }
   } // namespace
 
   template <int dim>
   void
   advance_points(const MomentumBalance<dim> &balance,
+                 const TransferKind          kind,
                  const Vector               &u,
-                 const Vector               &velocity_change,
+                 const Vector               &end_velocity,
+                 const Vector               &end_acceleration,
                  MaterialPoints<dim>        &points)
   {
-    const auto &footprints = balance.footprints();
-    auto        particle   = points.sorted.particles.begin();
-    for (const auto &cell : footprints.cells)
-      for (unsigned int e = cell.begin; e < cell.end; ++e, ++particle)
-        {
-          const unsigned int p      = footprints.point[e];
-          double            *fields = points.fields(p);
-          particle->set_location(
-            particle->get_location() +
-            interpolate<dim>(cell, footprints.value(e), u));
-
-          Tensor<2, 3> increment = balance.increment_gradient(p);
-          for (unsigned int d = 0; d < 3; ++d)
-            increment[d][d] += 1;
-          double *deformation = fields + points.offset_deformation;
-          points.layout.store_tensor(increment *
-                                       points.layout.load_tensor(deformation),
-                                     deformation);
-          std::copy_n(balance.trial_history(p),
-                      points.history_size(),
-                      fields + points.offset_history);
-          if (points.offset_velocity > 0)
-            {
-              const auto change =
-                interpolate<dim>(cell, footprints.value(e), velocity_change);
-              for (unsigned int d = 0; d < dim; ++d)
-                fields[points.offset_velocity + d] += change[d];
-            }
-        }
+    std::vector<Tensor<1, dim>> motion;
+    balance.footprints().interpolate(u, motion);
+    unsigned int p = 0;
+    for (auto &particle : points.sorted.particles)
+      {
+        particle.set_location(particle.get_location() + motion[p]);
+        double *fields      = points.fields(p);
+        double *deformation = fields + points.offset_deformation;
+        points.layout.store_tensor(balance.response.increment(p) *
+                                     points.layout.load_tensor(deformation),
+                                   deformation);
+        std::copy_n(balance.response.trial_history(p),
+                    points.history_size(),
+                    fields + points.offset_history);
+        ++p;
+      }
+    if (points.offset_velocity > 0)
+      advance_velocities(balance, kind, end_velocity, points);
+    if (points.offset_acceleration > 0)
+      {
+        balance.footprints().interpolate(end_acceleration, motion);
+        for (unsigned int q = 0; q < points.size(); ++q)
+          store_vector<dim>(motion[q],
+                            points.fields(q) + points.offset_acceleration);
+      }
   }
 
   template <int dim>
@@ -69,19 +207,20 @@ namespace impm
     const MaterialPoints<dim>                               &points,
     const std::function<Tensor<1, dim>(const Point<dim> &)> &grid_motion)
   {
-    double      largest    = 0;
-    const auto &footprints = balance.footprints();
-    auto        particle   = points.sorted.particles.begin();
-    for (const auto &cell : footprints.cells)
-      for (unsigned int e = cell.begin; e < cell.end; ++e, ++particle)
-        {
-          const auto motion = interpolate<dim>(cell, footprints.value(e), u) -
-                              grid_motion(particle->get_location());
-          for (unsigned int d = 0; d < dim; ++d)
-            largest =
-              std::max(largest,
-                       std::abs(motion[d]) / cell.cell->extent_in_direction(d));
-        }
+    std::vector<Tensor<1, dim>> motion;
+    balance.footprints().interpolate(u, motion);
+    double       largest = 0;
+    unsigned int p       = 0;
+    for (const auto &particle : points.sorted.particles)
+      {
+        const auto relative =
+          motion[p++] - grid_motion(particle.get_location());
+        const auto cell = particle.get_surrounding_cell();
+        for (unsigned int d = 0; d < dim; ++d)
+          largest =
+            std::max(largest,
+                     std::abs(relative[d]) / cell->extent_in_direction(d));
+      }
     return Utilities::MPI::max(largest, balance.grid.communicator);
   }
 
@@ -92,25 +231,24 @@ namespace impm
                      const MaterialPoints<dim>         &points,
                      const std::array<double, 2 * dim> &faces)
   {
-    std::string outside;
-    auto        particle = points.sorted.particles.begin();
-    for (const auto &cell : balance.footprints().cells)
-      for (unsigned int e = cell.begin; e < cell.end; ++e, ++particle)
-        {
-          const auto x =
-            particle->get_location() +
-            interpolate<dim>(cell, balance.footprints().value(e), u);
-          for (unsigned int f = 0; f < 2 * dim && outside.empty(); ++f)
-            if (f % 2 == 0 ? x[f / 2] < faces[f] : x[f / 2] > faces[f])
-              {
-                std::ostringstream text;
-                text << "point " << particle->get_id() << " at "
-                     << particle->get_location()
-                     << " would leave the domain through its "
-                     << face_names()[f] << " face";
-                outside = text.str();
-              }
-        }
+    std::vector<Tensor<1, dim>> motion;
+    balance.footprints().interpolate(u, motion);
+    std::string  outside;
+    unsigned int p = 0;
+    for (const auto &particle : points.sorted.particles)
+      {
+        const auto x = particle.get_location() + motion[p++];
+        for (unsigned int f = 0; f < 2 * dim && outside.empty(); ++f)
+          if (f % 2 == 0 ? x[f / 2] < faces[f] : x[f / 2] > faces[f])
+            {
+              std::ostringstream text;
+              text << "point " << particle.get_id() << " at "
+                   << particle.get_location()
+                   << " would leave the domain through its " << face_names()[f]
+                   << " face";
+              outside = text.str();
+            }
+      }
     for (const auto &text :
          Utilities::MPI::all_gather(balance.grid.communicator, outside))
       if (!text.empty())
@@ -118,34 +256,32 @@ namespace impm
     return outside;
   }
 
-  template std::string
-  find_point_outside(const MomentumBalance<2> &,
-                     const Vector &,
-                     const MaterialPoints<2> &,
-                     const std::array<double, 4> &);
-  template std::string
-  find_point_outside(const MomentumBalance<3> &,
-                     const Vector &,
-                     const MaterialPoints<3> &,
-                     const std::array<double, 6> &);
-  template void
-  advance_points(const MomentumBalance<2> &,
-                 const Vector &,
-                 const Vector &,
-                 MaterialPoints<2> &);
-  template void
-  advance_points(const MomentumBalance<3> &,
-                 const Vector &,
-                 const Vector &,
-                 MaterialPoints<3> &);
-  template double
-  largest_motion(const MomentumBalance<2> &,
-                 const Vector &,
-                 const MaterialPoints<2> &,
-                 const std::function<Tensor<1, 2>(const Point<2> &)> &);
-  template double
-  largest_motion(const MomentumBalance<3> &,
-                 const Vector &,
-                 const MaterialPoints<3> &,
-                 const std::function<Tensor<1, 3>(const Point<3> &)> &);
+#define INSTANTIATE(dim)                                                       \
+  template void   gather_motion(const MaterialPoints<dim> &,                   \
+                                const Footprints<dim> &,                       \
+                                const StepConstraints<dim> &,                  \
+                                const BackgroundGrid<dim> &,                   \
+                                Vector &,                                      \
+                                Vector &,                                      \
+                                Vector &);                                     \
+  template void   advance_points(const MomentumBalance<dim> &,                 \
+                                 TransferKind,                                 \
+                                 const Vector &,                               \
+                                 const Vector &,                               \
+                                 const Vector &,                               \
+                                 MaterialPoints<dim> &);                       \
+  template double largest_motion(                                              \
+    const MomentumBalance<dim> &,                                              \
+    const Vector &,                                                            \
+    const MaterialPoints<dim> &,                                               \
+    const std::function<Tensor<1, dim>(const Point<dim> &)> &);                \
+  template std::string find_point_outside(                                     \
+    const MomentumBalance<dim> &,                                              \
+    const Vector &,                                                            \
+    const MaterialPoints<dim> &,                                               \
+    const std::array<double, 2 * dim> &);
+
+  INSTANTIATE(2)
+  INSTANTIATE(3)
+#undef INSTANTIATE
 } // namespace impm

@@ -1,7 +1,7 @@
 #ifndef impm_ghost_penalty_h
 #define impm_ghost_penalty_h
 
-#include <impm/footprints.h>
+#include <impm/populated_cells.h>
 
 #include <vector>
 
@@ -33,9 +33,9 @@ namespace impm
 
     /** `gamma` in units of Young's modulus. Collective. */
     void
-    build(const Footprints<dim>     &footprints,
-          const MaterialPoints<dim> &points,
+    build(const PopulatedCells<dim> &populated,
           const BackgroundGrid<dim> &grid,
+          GeometryKind               geometry,
           double                     gamma);
 
     /** Adds G u; ghosts of `u` are up to date, those of `force` not summed. */

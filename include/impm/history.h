@@ -19,10 +19,11 @@ namespace impm
     double       dt                = 0;
     unsigned int newton_iterations = 0, linear_iterations = 0,
                  line_searches = 0, step_cuts = 0, projections = 0,
-                 solver_fallbacks = 0, noise_stops = 0, held_cells = 0;
-    double residual      = 0;
-    double external_work = 0; ///< since the start (J)
-    double wall_seconds  = 0; ///< since the start
+                 solver_fallbacks = 0, noise_stops = 0, held_cells = 0,
+                 limited_boxes = 0;
+    double residual            = 0;
+    double external_work       = 0; ///< since the start (J)
+    double wall_seconds        = 0; ///< since the start
   };
 
   /** Sums over all points. */

@@ -1,7 +1,7 @@
 #ifndef impm_isolated_cells_h
 #define impm_isolated_cells_h
 
-#include <impm/footprints.h>
+#include <impm/populated_cells.h>
 #include <impm/step_constraints.h>
 
 #include <vector>
@@ -10,12 +10,12 @@ namespace impm
 {
   /**
    * Pieces of material that share no face with any other and that nothing
-   * holds in some direction: without inertia they could fly. Returns, for
-   * every cell of the footprints, whether it belongs to one. Collective.
+   * holds in some direction: without inertia they could fly. Returns, by
+   * active cell, owned or ghost, whether it belongs to one. Collective.
    */
   template <int dim>
   std::vector<char>
-  find_isolated_cells(const Footprints<dim>      &footprints,
+  find_isolated_cells(const PopulatedCells<dim>  &populated,
                       const BackgroundGrid<dim>  &grid,
                       const StepConstraints<dim> &constraints,
                       bool                        axisymmetric);

@@ -90,10 +90,16 @@ namespace impm
       return data[point];
     }
 
+    unsigned int
+    body(const unsigned int point) const
+    {
+      return static_cast<unsigned int>(data[point][0]);
+    }
+
     const Material &
     material(const unsigned int point) const
     {
-      return *materials[static_cast<unsigned int>(data[point][0])];
+      return *materials[body(point)];
     }
 
     double
@@ -106,6 +112,16 @@ namespace impm
     mass(const unsigned int point) const
     {
       return initial_volume(point) * material(point).density;
+    }
+
+    /** Where a point was at the start, if the points keep it. */
+    dealii::Point<dim>
+    initial_position(const unsigned int point) const
+    {
+      dealii::Point<dim> place;
+      for (unsigned int d = 0; d < dim; ++d)
+        place[d] = data[point][offset_initial_position + d];
+      return place;
     }
 
     /** Fields, place, place in the cell and number of one point. */
@@ -126,8 +142,10 @@ namespace impm
     const PointLayout    layout;
     SortedParticles<dim> sorted;
     const unsigned int   offset_deformation, offset_history;
-    /** Offset of the velocity; 0 when the points have none. */
-    const unsigned int offset_velocity;
+    // 0 where the points have none of it. The affine velocity is a matrix by
+    // rows, d v_i / d x_j.
+    const unsigned int offset_velocity, offset_acceleration, offset_affine,
+      offset_initial_position;
     /** Within the history: offsets count from offset_history. */
     const PointLayout history_layout;
     const MPI_Comm    communicator;

@@ -4,12 +4,13 @@
 #include <deal.II/lac/full_matrix.h>
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 
-#include <impm/footprints.h>
+#include <impm/footprint_builder.h>
 #include <impm/ghost_penalty.h>
+#include <impm/point_response.h>
 #include <impm/step_constraints.h>
 #include <impm/time_integrator.h>
 
-#include <functional>
+#include <memory>
 
 namespace impm
 {
@@ -21,8 +22,7 @@ namespace impm
    * dF = I + sum_I u_I (x) grad N_I, F = dF F_n, and the internal force is
    * f_I = sum_p V0_p P_p grad N_I with P = tau dF^-T, gradients at t_n. The
    * tangent at a point is A = dP/d(dF), that is the spatial tangent of the
-   * Newmark note carried back by dF^-1. A gradient of u has dim * dim values
-   * (d u_i / d x_j at [i dim + j]) and, when axisymmetric, u_r / r behind.
+   * Newmark note carried back by dF^-1; see PointResponse.
    */
   template <int dim>
   class MomentumBalance
@@ -62,7 +62,19 @@ namespace impm
      * next Newton step descends. Needs a symmetric tangent.
      */
     void
-    project_tangent();
+    project_tangent()
+    {
+      response.project_tangent();
+    }
+
+    /**
+     * Velocity (m/s) and, if the integrator keeps it, acceleration (m/s^2) of
+     * the grid after a step that has converged at `u`. What is prescribed has
+     * the mean velocity of its step. Ghosts and hanging nodes are up to date.
+     * Collective.
+     */
+    void
+    end_motion(const Vector &u, Vector &velocity, Vector &acceleration) const;
 
     /** Gradient of the potential (N); zero where constrained. */
     const Vector &
@@ -124,30 +136,26 @@ namespace impm
       return prints;
     }
 
-    /** dF - I at a point as of the last evaluation. */
-    dealii::Tensor<2, 3>
-    increment_gradient(unsigned int point) const;
-
-    const double *
-    trial_history(const unsigned int point) const
+    unsigned int
+    n_limited_boxes() const
     {
-      return &histories[point * points.history_size()];
+      return builder->n_limited_boxes;
     }
 
     const BackgroundGrid<dim> &grid;
     StepConstraints<dim>       constraints;
+    PointResponse<dim>         response;
+    PopulatedCells<dim>        populated;
 
-    Vector                mass;          ///< lumped (kg), ready at begin_step
-    Vector                velocity;      ///< at the start (m/s), if inertia
-    unsigned int          n_held_cells;  ///< isolated ones
+    // Of the nodes, at the start of the step.
+    Vector                mass;         ///< lumped (kg), if inertia
+    Vector                velocity;     ///< (m/s), if inertia
+    Vector                acceleration; ///< (m/s^2), if the integrator wants it
+    unsigned int          n_held_cells; ///< isolated ones
     unsigned int          n_active_dofs; ///< neither constrained nor unused
-    unsigned long         n_stress_evaluations = 0; ///< of this rank, all steps
     mutable unsigned long n_operator_applications = 0;
 
   private:
-    void
-    gather_inertia();
-
     /** Gradients of a vector at all points; its ghosts are up to date. */
     void
     gradients_at_points(const Vector &u, std::vector<double> &gradients) const;
@@ -156,12 +164,16 @@ namespace impm
     void
     add_point_forces(const std::vector<double> &stress, Vector &force) const;
 
-    bool
-    evaluate_materials(bool with_tangent, double &potential);
+    void
+    mark_support();
 
     /** Minus the external forces at an instant (N). */
     void
     gather_load(double instant, Vector &load);
+
+    /** Forces at the start of the step, if the integrator weighs them. */
+    void
+    gather_start_forces();
 
     void
     hold_isolated_cells();
@@ -179,31 +191,44 @@ namespace impm
     void
     apply_tangent(Vector &dst, const Vector &src) const;
 
+    using Patch = typename Footprints<dim>::Patch;
+
     void
-    cell_matrix(const typename Footprints<dim>::Cell &cell,
-                dealii::FullMatrix<double>           &matrix) const;
+    patch_matrix(const Patch &patch, dealii::FullMatrix<double> &matrix) const;
+
+    template <typename Size>
+    void
+    add_points(const Patch                &patch,
+               Size                        n_patch_nodes,
+               dealii::FullMatrix<double> &matrix) const;
+
+    void
+    add_coupling(const Patch &patch, dealii::FullMatrix<double> &matrix) const;
+
+    std::vector<dealii::types::global_dof_index>
+    dofs_of_nodes(const unsigned int *begin, const unsigned int *end) const;
 
     const Scene<dim>          &scene;
     const MaterialPoints<dim> &points;
     const TimeIntegrator      &integrator;
+    const bool                 axisymmetric;
+    const unsigned int         n_gradients; ///< values of a gradient
+    double                     time, dt;
 
-    const bool         axisymmetric;
-    const unsigned int n_gradients; ///< values of a gradient
-    double             time, dt;
+    const std::unique_ptr<FootprintBuilder<dim>> builder;
+    Footprints<dim>                              prints;
+    GhostPenalty<dim>                            ghost;
+    Vector holding;            ///< stiffness of isolated cells (N/m)
+    Vector known_acceleration; ///< (m/s^2)
+    Vector load;               ///< minus the external forces (N)
+    Vector start_forces;       ///< f(0) (N), if the integrator weighs it
+    double force_scale;        ///< norm of the forces at a strain of one (N)
+    double smallest_extent;    ///< of a cell (m)
 
-    Footprints<dim>   prints;
-    GhostPenalty<dim> ghost;
-    Vector            holding;            ///< stiffness of isolated cells (N/m)
-    Vector            known_acceleration; ///< (m/s^2)
-    Vector            load;               ///< minus the external forces (N)
-    Vector            start_forces; ///< f(0) (N), if the integrator weighs it
-    double force_scale;     ///< norm of the forces at a strain of one (N)
-    double smallest_extent; ///< of a cell (m)
-
-    // By point, in units of N m: the volume is in them.
-    std::vector<double> gradients, stresses, tangents, histories;
+    std::vector<dealii::Tensor<1, dim>> point_forces; ///< (N)
 
     mutable std::vector<double> gradient_increments, stress_increments;
+    mutable std::vector<double> slopes, shares; ///< of a point on its patch
     mutable Vector              work;
     Vector                      forces, free_residual;
   };

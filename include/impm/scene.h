@@ -17,12 +17,30 @@
 
 namespace impm
 {
+  /** What a material point is to the grid. */
+  enum class GridMethod
+  {
+    mpm,       ///< a place
+    gimp,      ///< a box
+    lagrangian ///< a Gauss point of a grid that stays with the material
+  };
+
+  /** How velocities come from the grid to the points. */
+  enum class TransferKind
+  {
+    flip,
+    pic,
+    apic
+  };
+
   /** The background grid at the start: a box of equal cells. */
   template <int dim>
   struct GridSpec
   {
     dealii::Point<dim>            lower_corner, upper_corner;
     std::array<unsigned int, dim> cells;
+    GridMethod                    method        = GridMethod::mpm;
+    bool                          boxes_stretch = true; ///< GIMP: with F
 
     /** Cells whose centre makes `refine_where` positive are split so often. */
     unsigned int                                 refinement_levels = 0;
@@ -96,6 +114,9 @@ namespace impm
   {
     std::string  integrator;
     double       theta = 1;
+    double       beta = 0.25, gamma = 0.5;   ///< of Newmark's method
+    bool         keeps_acceleration = false; ///< at the points
+    TransferKind transfer           = TransferKind::flip;
     double       end, step, growth, largest_step, smallest_step;
     unsigned int largest_number_of_steps;
   };
@@ -141,10 +162,11 @@ namespace impm
     std::vector<BodySpec<dim>>                   bodies;
     std::array<FaceSpec<dim>, 2 * dim>           faces;
     std::shared_ptr<dealii::FunctionParser<dim>> body_force; ///< N/kg, or null
-    TimeSpec                                     time;
-    SolverSpec                                   solver;
-    StabilizationSpec                            stabilization;
-    OutputSpec                                   output;
+    bool       body_force_is_initial = false; ///< a function of initial places
+    TimeSpec   time;
+    SolverSpec solver;
+    StabilizationSpec stabilization;
+    OutputSpec        output;
 
     /** What the file names to no effect. */
     std::vector<std::string> warnings;

@@ -86,7 +86,7 @@ namespace impm
     Pictures<dim>                         pictures;
     History<dim>                          history;
     Console                               console;
-    Vector                                u, velocity_change;
+    Vector                                u, end_velocity, end_acceleration;
 
     dealii::Timer wall;
     std::string   directory;

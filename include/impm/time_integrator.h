@@ -15,7 +15,7 @@ namespace impm
    *     + (1 - force_factor) f(0) = 0,
    *
    * u is the grid's increment, f internal minus external forces, `known` comes
-   * from the velocity at the start.
+   * from velocity and acceleration at the start.
    */
   class TimeIntegrator
   {
@@ -25,6 +25,13 @@ namespace impm
     virtual bool
     has_inertia() const = 0;
 
+    /** Whether the points carry their acceleration from step to step. */
+    virtual bool
+    keeps_acceleration() const
+    {
+      return false;
+    }
+
     /** (1/s^2) */
     virtual double
     mass_factor(double dt) const = 0;
@@ -32,18 +39,24 @@ namespace impm
     virtual double
     force_factor() const = 0;
 
-    /** The known part of the acceleration (m/s^2) from the velocity (m/s). */
+    /**
+     * The known part of the acceleration (m/s^2). `acceleration` is that at
+     * the start where the integrator keeps it or weighs the forces there.
+     */
     virtual void
     known_acceleration(double        dt,
                        const Vector &velocity,
+                       const Vector &acceleration,
                        Vector       &known) const = 0;
 
-    /** Velocity at the end of the step (m/s). */
+    /** Velocity (m/s) and acceleration (m/s^2) at the end of the step. */
     virtual void
-    end_velocity(double        dt,
-                 const Vector &u,
-                 const Vector &start_velocity,
-                 Vector       &velocity) const = 0;
+    end_motion(double        dt,
+               const Vector &u,
+               const Vector &velocity,
+               const Vector &acceleration,
+               Vector       &end_velocity,
+               Vector       &end_acceleration) const = 0;
   };
 
   /** The integrator that a scene names: every one stands in here. */

@@ -6,16 +6,39 @@
 namespace impm
 {
   /**
+   * From points to grid at the start of a step: lumped mass (kg), velocity
+   * (m/s) with the momentum of the points, and acceleration if they carry
+   * one (m/s^2). Collective.
+   */
+  template <int dim>
+  void
+  gather_motion(const MaterialPoints<dim>  &points,
+                const Footprints<dim>      &footprints,
+                const StepConstraints<dim> &constraints,
+                const BackgroundGrid<dim>  &grid,
+                Vector                     &mass,
+                Vector                     &velocity,
+                Vector                     &acceleration);
+
+  /**
    * From grid to points at the end of a step that has converged at `u`:
-   * positions, deformation, history and, with inertia, velocity, which takes
-   * the change of the grid's (FLIP: Sulsky & Kaul 2004, eq. 2.3.2 and 2.3.3).
-   * Hanging nodes of all vectors are set. The points are not sorted.
+   * positions, deformation, history and, with inertia, velocity and what else
+   * they carry of the motion:
+   *
+   *   FLIP  the velocity takes the change of the grid's (Sulsky & Kaul 2004,
+   *         eq. 2.3.2 and 2.3.3),
+   *   PIC   it becomes the grid's,
+   *   APIC  so, and the point keeps its gradient (Jiang et al. 2015).
+   *
+   * Ghosts of all vectors are up to date. The points are not sorted.
    */
   template <int dim>
   void
   advance_points(const MomentumBalance<dim> &balance,
+                 TransferKind                kind,
                  const Vector               &u,
-                 const Vector               &velocity_change,
+                 const Vector               &end_velocity,
+                 const Vector               &end_acceleration,
                  MaterialPoints<dim>        &points);
 
   /**
@@ -30,6 +53,7 @@ namespace impm
     const MaterialPoints<dim>  &points,
     const std::function<dealii::Tensor<1, dim>(const dealii::Point<dim> &)>
       &grid_motion);
+
   /**
    * Names a point that the step would carry out of a domain whose faces lie
    * at `faces` when it ends; empty if none. Collective.

@@ -195,6 +195,8 @@ namespace
                                    "Time/Theta=0.5",
                                    "Time/Time step=0.3",
                                    "Bodies/block/Velocity=0.01*y; 0.02"};
+  const Overrides boxes         = {"Grid/Method=GIMP"};
+  const Overrides f_bar         = {"Materials/rubber/F-bar=true"};
   const Overrides without_ghost = {"Stabilization/Ghost penalty=0"};
 } // namespace
 
@@ -230,6 +232,49 @@ TEST(MomentumBalanceMpi, DerivativesWithInertia)
 }
 
 
+TEST(MomentumBalanceMpi, DerivativesOfBoxes)
+{
+  check<2>("plane strain", boxes, 0.03);
+  check<2>("plane strain", boxes + refined + plastic, 0.01);
+  check<2>("axisymmetric",
+           boxes + refined + trapezoidal + Overrides{"Grid/Boxes=fixed"},
+           0.01);
+  check<3>("3D", boxes + refined + Overrides{"Grid/Cells=3, 2, 2"}, 0.01);
+}
+
+
+TEST(MomentumBalanceMpi, DerivativesWithMeanVolume)
+{
+  const Overrides nearly_incompressible = {
+    "Materials/rubber/Poisson's ratio=0.49"};
+  for (const std::string kind : {"plane strain", "axisymmetric"})
+    {
+      check<2>(kind, f_bar, 0.02);
+      check<2>(kind, f_bar + plastic + refined, 0.01);
+      check<2>(kind, f_bar + nearly_incompressible, 0.005);
+      check<2>(kind, f_bar + boxes + refined, 0.01);
+    }
+  check<3>("3D", f_bar + plastic + Overrides{"Grid/Cells=2, 3, 2"}, 0.02);
+  check<3>("3D", f_bar + boxes + Overrides{"Grid/Cells=2, 2, 2"}, 0.01);
+}
+
+
+TEST(MomentumBalanceMpi, DerivativesWithNewmark)
+{
+  Overrides newmark = {"Time/Integrator=Newmark",
+                       "Time/Beta=0.3",
+                       "Time/Gamma=0.6",
+                       "Time/Time step=0.3",
+                       "Bodies/block/Velocity=0.01*y; 0.02"};
+  for (const std::string from : {"grid", "points"})
+    for (const std::string transfer : {"FLIP", "PIC", "APIC"})
+      check<2>("plane strain",
+               newmark + Overrides{"Time/Acceleration from=" + from,
+                                   "Time/Transfer=" + transfer},
+               0.02);
+}
+
+
 // The ghost penalty counts on a face as often as it should: for a field with a
 // kink over one face its energy is known.
 TEST(MomentumBalanceMpi, GhostPenaltyOfAKink)
@@ -251,7 +296,10 @@ TEST(MomentumBalanceMpi, GhostPenaltyOfAKink)
             k * std::max(0., model.grid.node_positions()[i / 2][0] - 0.25);
       model.balance.constraints.interpolate_hanging(u);
       GhostPenalty<2> ghost;
-      ghost.build(model.balance.footprints(), model.points, model.grid, 0.03);
+      ghost.build(model.balance.populated,
+                  model.grid,
+                  model.scene.geometry,
+                  0.03);
       // gamma E h (jump)^2 / 2 on a face of length 1; h of the finer side
       const double h = fine_in_part ? 0.125 : 0.25;
       EXPECT_NEAR(Utilities::MPI::sum(ghost.energy(u), MPI_COMM_WORLD) /

@@ -250,14 +250,10 @@ namespace impm
     commit(const Vector &u)
     {
       u.update_ghost_values();
-      Vector change = vector();
-      if (integrator->has_inertia())
-        {
-          integrator->end_velocity(dt, u, balance.velocity, change);
-          change -= balance.velocity;
-          balance.constraints.interpolate_hanging(change);
-        }
-      advance_points(balance, u, change, points);
+      Vector velocity = vector(), acceleration = vector();
+      balance.end_motion(u, velocity, acceleration);
+      advance_points(
+        balance, scene.time.transfer, u, velocity, acceleration, points);
       points.sort();
       time += dt;
     }

@@ -105,6 +105,9 @@ namespace impm
       return true;
     }
 
+    /** Whether the points of a cell share its change of volume (F-bar). */
+    bool average_volume = false;
+
     const double density; ///< in the initial configuration (kg/m^3)
   };
 } // namespace impm

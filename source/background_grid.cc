@@ -1,6 +1,8 @@
 #include <deal.II/dofs/dof_tools.h>
 
 #include <deal.II/fe/fe_q.h>
+#include <deal.II/fe/mapping_cartesian.h>
+#include <deal.II/fe/mapping_q.h>
 
 #include <deal.II/grid/grid_generator.h>
 #include <deal.II/grid/grid_tools.h>
@@ -29,6 +31,16 @@ namespace impm
         }
       return halvings;
     }
+
+    template <int dim>
+    std::unique_ptr<const Mapping<dim>>
+    make_mapping(const bool any_quadrilaterals)
+    {
+      // Particles on faces are lost with any mapping but the Cartesian one.
+      if (any_quadrilaterals)
+        return std::make_unique<MappingQ<dim>>(1);
+      return std::make_unique<MappingCartesian<dim>>();
+    }
   } // namespace
 
   template <int dim>
@@ -36,6 +48,8 @@ namespace impm
                                       const MPI_Comm       communicator)
     : communicator(communicator)
     , triangulation(communicator)
+    , is_lagrangian(spec.method == GridMethod::lagrangian)
+    , mapping(make_mapping<dim>(is_lagrangian))
     , fe(FE_Q<dim>(1), dim)
     , dof_handler(triangulation)
     , lower_corner(spec.lower_corner)
@@ -60,7 +74,18 @@ namespace impm
             cell->set_refine_flag();
         triangulation.execute_coarsening_and_refinement();
       }
+    if (spec.map)
+      GridTools::transform(
+        [&](const Point<dim> &place) {
+          dealii::Vector<double> image(dim);
+          spec.map->vector_value(place, image);
+          Point<dim> moved;
+          std::copy(image.begin(), image.end(), moved.begin_raw());
+          return moved;
+        },
+        triangulation);
     distribute_dofs();
+    initial_positions = is_lagrangian ? positions : initial_positions;
   }
 
   template <int dim>
@@ -151,6 +176,15 @@ namespace impm
       triangulation);
     (face % 2 == 0 ? lower_corner : upper_corner)[d] = position;
     locate_nodes();
+  }
+
+  template <int dim>
+  void
+  BackgroundGrid<dim>::carry(const Vector &u)
+  {
+    for (unsigned int n = 0; n < positions.size(); ++n)
+      for (unsigned int d = 0; d < dim; ++d)
+        positions[n][d] += u.local_element(dim * n + d);
   }
 
   template <int dim>

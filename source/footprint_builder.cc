@@ -257,6 +257,46 @@ namespace impm
         }
       footprints.build(pieces, p, grid, &Footprints<dim>::box_shape);
     }
+    /** Finite elements: Gauss points of cells that go with the material. */
+    template <int dim>
+    class GaussPoints : public FootprintBuilder<dim>
+    {
+    public:
+      void
+      build(const MaterialPoints<dim> &points,
+            const BackgroundGrid<dim> &grid,
+            Footprints<dim>           &footprints) override
+      {
+        pieces.clear();
+        footprints.inverse_radius.clear();
+        unsigned int p = 0;
+        for (const auto &particle : points.sorted.particles)
+          {
+            pieces.push_back(
+              {p++,
+               with_dofs<dim>(particle.get_surrounding_cell(), grid),
+               1.,
+               particle.get_reference_location()});
+            if (points.layout.geometry == GeometryKind::axisymmetric)
+              footprints.inverse_radius.push_back(1 /
+                                                  particle.get_location()[0]);
+          }
+        footprints.build(pieces,
+                         p,
+                         grid,
+                         [&](const typename Footprints<dim>::Piece &piece,
+                             double                                *values,
+                             double                                *gradients) {
+                           Footprints<dim>::mapped_shape(piece,
+                                                         grid,
+                                                         values,
+                                                         gradients);
+                         });
+      }
+
+    private:
+      std::vector<typename Footprints<dim>::Piece> pieces;
+    };
   } // namespace
 
   template <int dim>
@@ -265,6 +305,8 @@ namespace impm
   {
     if (scene.grid.method == GridMethod::gimp)
       return std::make_unique<Boxes<dim>>(scene.grid.boxes_stretch);
+    if (scene.grid.method == GridMethod::lagrangian)
+      return std::make_unique<GaussPoints<dim>>();
     return std::make_unique<Points<dim>>();
   }
 

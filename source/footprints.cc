@@ -39,6 +39,38 @@ namespace impm
 
   template <int dim>
   void
+  Footprints<dim>::mapped_shape(const Piece               &piece,
+                                const BackgroundGrid<dim> &grid,
+                                double                    *values,
+                                double                    *gradients)
+  {
+    const auto                         &positions = grid.node_positions();
+    const auto                          nodes     = grid.nodes_of(piece.cell);
+    Tensor<2, dim>                      jacobian; // d x_i / d xi_j
+    std::array<Tensor<1, dim>, n_nodes> slopes;
+    for (unsigned int v = 0; v < n_nodes; ++v)
+      {
+        values[v] =
+          piece.weight *
+          GeometryInfo<dim>::d_linear_shape_function(piece.centroid, v);
+        slopes[v] =
+          GeometryInfo<dim>::d_linear_shape_function_gradient(piece.centroid,
+                                                              v);
+        for (unsigned int i = 0; i < dim; ++i)
+          for (unsigned int j = 0; j < dim; ++j)
+            jacobian[i][j] += positions[nodes[v]][i] * slopes[v][j];
+      }
+    const auto inverse = transpose(invert(jacobian));
+    for (unsigned int v = 0; v < n_nodes; ++v)
+      {
+        const auto slope = inverse * slopes[v];
+        for (unsigned int d = 0; d < dim; ++d)
+          gradients[v * dim + d] = piece.weight * slope[d];
+      }
+  }
+
+  template <int dim>
+  void
   Footprints<dim>::build(const std::vector<Piece>  &pieces,
                          const unsigned int         n_points,
                          const BackgroundGrid<dim> &grid,

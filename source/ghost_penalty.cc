@@ -55,9 +55,9 @@ namespace impm
     const QGauss<dim - 1> quadrature(2);
     const UpdateFlags     flags = update_gradients | update_normal_vectors |
                               update_quadrature_points | update_JxW_values;
-    FEFaceValues<dim>      here(grid.mapping, fe, quadrature, flags);
-    FEFaceValues<dim>      there(grid.mapping, fe, quadrature, flags);
-    FESubfaceValues<dim>   there_coarser(grid.mapping, fe, quadrature, flags);
+    FEFaceValues<dim>      here(*grid.mapping, fe, quadrature, flags);
+    FEFaceValues<dim>      there(*grid.mapping, fe, quadrature, flags);
+    FESubfaceValues<dim>   there_coarser(*grid.mapping, fe, quadrature, flags);
     constexpr unsigned int half = max_nodes / 2;
     const bool axisymmetric     = geometry == GeometryKind::axisymmetric;
 

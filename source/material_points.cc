@@ -14,7 +14,7 @@ namespace impm
   template <int dim>
   SortedParticles<dim>::SortedParticles(const BackgroundGrid<dim> &grid,
                                         const unsigned int n_doubles_per_point)
-    : particles(grid.triangulation, grid.mapping, n_doubles_per_point)
+    : particles(grid.triangulation, *grid.mapping, n_doubles_per_point)
     , grid(grid)
   {
     particles.signals.particle_lost.connect(
@@ -45,12 +45,12 @@ namespace impm
       {
         if (fill)
           fill(seed, values.data());
-        particles.insert_particle(
-          seed.position,
-          grid.mapping.transform_real_to_unit_cell(seed.cell, seed.position),
-          id++,
-          seed.cell,
-          ArrayView<const double>(values.data(), values.size()));
+        particles.insert_particle(seed.position,
+                                  seed.unit_position,
+                                  id++,
+                                  seed.cell,
+                                  ArrayView<const double>(values.data(),
+                                                          values.size()));
       }
     particles.update_cached_numbers();
   }
@@ -59,6 +59,9 @@ namespace impm
   void
   SortedParticles<dim>::sort()
   {
+    // Gauss points stay in their cells wherever these go.
+    if (grid.is_lagrangian)
+      return;
     const auto before = particles.n_global_particles();
     particles.sort_particles_into_subdomains_and_cells();
     const auto missing = before - particles.n_global_particles();

@@ -1,7 +1,8 @@
 #include <impm/exceptions.h>
+#include <impm/face_traction.h>
+#include <impm/grid_motion.h>
 #include <impm/isolated_cells.h>
 #include <impm/momentum_balance.h>
-#include <impm/transfer.h>
 
 #include <cmath>
 
@@ -59,9 +60,15 @@ namespace impm
                 scene.stabilization.ghost_penalty);
     gather_load(time + dt, load);
     hold_isolated_cells();
-    if (integrator.has_inertia())
+    if (integrator.has_inertia() && !nodes_have_motion)
       gather_motion(
         points, prints, constraints, grid, mass, velocity, acceleration);
+    if (integrator.has_inertia() && grid.is_lagrangian && !nodes_have_motion)
+      {
+        interpolate_initial_velocity(
+          scene, points, prints, constraints, grid, mass, velocity);
+        nodes_have_motion = true;
+      }
     if (integrator.force_factor() < 1)
       gather_start_forces();
     if (integrator.has_inertia())
@@ -139,6 +146,20 @@ namespace impm
         }
     constraints.interpolate_hanging(end_velocity);
     constraints.interpolate_hanging(end_acceleration);
+  }
+
+  template <int dim>
+  void
+  MomentumBalance<dim>::carry_motion(BackgroundGrid<dim> &moving_grid,
+                                     const Vector        &u,
+                                     const Vector        &end_velocity,
+                                     const Vector        &end_acceleration)
+  {
+    if (!grid.is_lagrangian)
+      return;
+    moving_grid.carry(u);
+    velocity     = end_velocity;
+    acceleration = end_acceleration;
   }
 
   template <int dim>
@@ -235,8 +256,18 @@ namespace impm
   MomentumBalance<dim>::gather_load(const double instant, Vector &load)
   {
     load = 0;
-    if (!scene.body_force)
-      return;
+    if (scene.body_force)
+      add_body_force(instant, load);
+    if (grid.is_lagrangian)
+      add_face_tractions(scene, grid, instant, -1., load);
+    load.compress(VectorOperation::add);
+    constraints.condense_hanging(load);
+  }
+
+  template <int dim>
+  void
+  MomentumBalance<dim>::add_body_force(const double instant, Vector &load)
+  {
     scene.body_force->set_time(instant);
     dealii::Vector<double> value(dim);
     unsigned int           p = 0;
@@ -252,8 +283,6 @@ namespace impm
         ++p;
       }
     prints.spread(point_forces, load);
-    load.compress(VectorOperation::add);
-    constraints.condense_hanging(load);
   }
 
   template <int dim>

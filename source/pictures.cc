@@ -1,6 +1,8 @@
 #include <deal.II/base/data_out_base.h>
 #include <deal.II/base/utilities.h>
 
+#include <deal.II/fe/mapping_q1_eulerian.h>
+
 #include <deal.II/numerics/data_out.h>
 
 #include <impm/exceptions.h>
@@ -235,7 +237,25 @@ namespace impm
     grid_writer.add_data_vector(level, "level");
     grid_writer.add_data_vector(owner, "rank");
     grid_writer.add_data_vector(n_points, "points");
-    grid_writer.build_patches(balance.grid.mapping);
+    if (!balance.grid.is_lagrangian)
+      grid_writer.build_patches(*balance.grid.mapping);
+    else
+      {
+        Vector total;
+        balance.grid.initialize(total);
+        for (unsigned int n = 0; n < balance.grid.node_positions().size(); ++n)
+          for (unsigned int d = 0; d < dim; ++d)
+            total.local_element(dim * n + d) =
+              balance.grid.node_positions()[n][d] -
+              balance.grid.initial_node_positions()[n][d];
+        grid_writer.add_data_vector(balance.grid.dof_handler,
+                                    total,
+                                    std::vector<std::string>(dim,
+                                                             "displacement"),
+                                    vector);
+        grid_writer.build_patches(
+          MappingQ1Eulerian<dim, Vector>(balance.grid.dof_handler, total));
+      }
     grid_files.emplace_back(
       time, write_vtu(grid_writer, directory, "grid_" + number, comm));
 

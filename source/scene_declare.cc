@@ -111,10 +111,19 @@ namespace impm
                         "Number of cells in each direction.");
       prm.declare_entry("Method",
                         "MPM",
-                        Patterns::Selection("MPM|GIMP"),
+                        Patterns::Selection("MPM|GIMP|Lagrangian"),
                         "What a material point is to the grid. MPM: a place. "
                         "GIMP: a box, so that forces change smoothly when "
-                        "it crosses into the next cell.");
+                        "it crosses into the next cell. Lagrangian: a Gauss "
+                        "point of a grid that fits the bodies and goes with "
+                        "them, that is, finite elements.");
+      if (may_be(chosen("Grid/Method", "MPM"), "Lagrangian"))
+        prm.declare_entry("Map",
+                          "",
+                          Patterns::Anything(),
+                          "Where a place x, y, z of the domain really is (m): "
+                          "one expression for each direction, between "
+                          "semicolons; empty: there.");
       if (may_be(chosen("Grid/Method", "MPM"), "GIMP"))
         prm.declare_entry("Boxes",
                           "stretched",
@@ -191,7 +200,8 @@ namespace impm
           prm.declare_entry("Points per cell",
                             "2",
                             Patterns::Integer(1, 20),
-                            "In each direction of a cell.");
+                            "In each direction of a cell; Gauss points if the "
+                            "grid is Lagrangian.");
         }
       else
         prm.declare_entry("File",
@@ -234,6 +244,7 @@ namespace impm
     declare_faces(ParameterHandler &prm, const ParameterFile::Chosen &chosen)
     {
       prm.enter_subsection("Boundary conditions");
+      const auto         method  = chosen("Grid/Method", "MPM");
       const unsigned int n_faces = chosen("Geometry/Kind", "") == "3D" ? 6 : 4;
       for (unsigned int f = 0; f < n_faces; ++f)
         {
@@ -243,8 +254,9 @@ namespace impm
             "Type",
             "free",
             Patterns::Selection("free|fixed|slip|displacement|velocity|normal "
-                                "displacement|normal velocity"),
-            "Of the face of the domain. Slip: no motion through it.");
+                                "displacement|normal velocity|traction"),
+            "Of the face of the domain. Slip: no motion through it. Traction: "
+            "only on a Lagrangian grid, which fits the body.");
           const auto type =
             chosen("Boundary conditions/" + name + "/Type", "free");
           if (type != "free" && type != "fixed" && type != "slip")
@@ -252,15 +264,17 @@ namespace impm
               prm.declare_entry("Value",
                                 "",
                                 Patterns::Anything(),
-                                "Displacement since the start (m) or velocity "
-                                "(m/s): expressions in x, y, z, t, one for "
+                                "Displacement since the start (m), velocity "
+                                "(m/s) or force per initial area (Pa): "
+                                "expressions in x, y, z, t, one for "
                                 "each direction, between semicolons; a normal "
                                 "one has one, along the axis.");
-              prm.declare_entry("Moves the grid",
-                                "false",
-                                Patterns::Bool(),
-                                "The grid is stretched with this face, which "
-                                "moves as a plane.");
+              if (type != "traction" && method != "Lagrangian")
+                prm.declare_entry("Moves the grid",
+                                  "false",
+                                  Patterns::Bool(),
+                                  "The grid is stretched with this face, which "
+                                  "moves as a plane.");
             }
           prm.leave_subsection();
         }
@@ -320,7 +334,8 @@ namespace impm
                           Patterns::Double(0.5, 1),
                           "Weight of the forces at the end of the step; 1: "
                           "backward Euler, 0.5: trapezoidal.");
-      if (integrator != "quasi-static")
+      if (integrator != "quasi-static" &&
+          chosen("Grid/Method", "MPM") != "Lagrangian")
         prm.declare_entry("Transfer",
                           "FLIP",
                           Patterns::Selection("FLIP|PIC|APIC"),
@@ -413,6 +428,9 @@ namespace impm
     declare_stabilization(ParameterHandler            &prm,
                           const ParameterFile::Chosen &chosen)
     {
+      // Cells of a Lagrangian grid are full.
+      if (chosen("Grid/Method", "MPM") == "Lagrangian")
+        return;
       prm.enter_subsection("Stabilization");
       prm.declare_entry("Ghost penalty",
                         "0.033",

@@ -73,10 +73,19 @@ namespace impm
           grid.method        = GridMethod::gimp;
           grid.boxes_stretch = prm.get("Boxes") == "stretched";
         }
+      else if (prm.get("Method") == "Lagrangian")
+        {
+          grid.method = GridMethod::lagrangian;
+          grid.map = read_expressions<dim>(prm, "Map", dim, false, constants);
+        }
       grid.refinement_levels = prm.get_integer("Local refinements");
       if (grid.refinement_levels > 0)
         grid.refine_where =
           read_expressions<dim>(prm, "Refine where", 1, false, constants);
+      if (grid.refinement_levels > 0 && grid.map)
+        throw InputError("Map",
+                         "found a map of a grid with local refinements, which "
+                         "would gape at hanging nodes; allowed is one of both");
       return grid;
     }
 
@@ -84,6 +93,7 @@ namespace impm
     FaceSpec<dim>
     read_face(const ParameterHandler &prm,
               const unsigned int      face,
+              const bool              lagrangian,
               const Constants        &constants)
     {
       FaceSpec<dim> spec;
@@ -95,12 +105,24 @@ namespace impm
         spec.constrained[d] = type != "free" && (!only_normal || d == normal);
       if (type == "free" || type == "fixed" || type == "slip")
         return spec;
+      if (type == "traction")
+        {
+          if (!lagrangian)
+            throw InputError("Type",
+                             "found 'traction', which is for a Lagrangian "
+                             "grid: only there is the face of the domain one "
+                             "of the body");
+          spec.constrained.fill(false);
+          spec.traction =
+            read_expressions<dim>(prm, "Value", dim, true, constants);
+          return spec;
+        }
       spec.is_velocity = type.find("velocity") != std::string::npos;
       spec.value       = read_expressions<dim>(
         prm, "Value", only_normal ? 1 : dim, true, constants);
       if (!spec.value)
         throw InputError("Value", "found '', allowed are expressions");
-      spec.moves_grid = prm.get_bool("Moves the grid");
+      spec.moves_grid = !lagrangian && prm.get_bool("Moves the grid");
       return spec;
     }
 
@@ -111,7 +133,8 @@ namespace impm
               const NamedShapes<dim>                                 &shapes,
               const std::map<std::string, std::shared_ptr<Material>> &materials,
               const bool                                              inertia,
-              const Constants                                        &constants)
+              const bool       lagrangian,
+              const Constants &constants)
     {
       const auto pick = [&](const auto &choices, const std::string &entry) {
         const auto it = choices.find(prm.get(entry));
@@ -129,6 +152,14 @@ namespace impm
       BodySpec<dim> body;
       body.name  = name;
       body.rigid = prm.get("Kind") == "rigid";
+      if (lagrangian && body.rigid)
+        throw InputError("Kind",
+                         "found 'rigid', allowed on a Lagrangian grid is "
+                         "'deformable'");
+      if (lagrangian && prm.get("Points from") != "shape")
+        throw InputError("Points from",
+                         "found 'file', allowed on a Lagrangian grid, where "
+                         "points are Gauss points, is 'shape'");
       if (prm.get("Points from") == "shape")
         {
           body.shape           = pick(shapes, "Shape");
@@ -160,7 +191,7 @@ namespace impm
     }
 
     TimeSpec
-    read_time(const ParameterHandler &prm)
+    read_time(const ParameterHandler &prm, const bool lagrangian)
     {
       TimeSpec time;
       time.integrator = prm.get("Integrator");
@@ -172,7 +203,9 @@ namespace impm
           time.gamma              = prm.get_double("Gamma");
           time.keeps_acceleration = prm.get("Acceleration from") == "points";
         }
-      if (time.integrator != "quasi-static")
+      if (lagrangian)
+        time.transfer = TransferKind::pic; // points only show the motion
+      else if (time.integrator != "quasi-static")
         {
           const std::string transfer = prm.get("Transfer");
           time.transfer              = transfer == "FLIP" ? TransferKind::flip :
@@ -296,7 +329,7 @@ namespace impm
           deformable = deformable || !body.rigid;
           const auto box =
             body.shape ? body.shape->bounding_box() : std::nullopt;
-          if (!box)
+          if (!box || scene.grid.method == GridMethod::lagrangian)
             continue;
           for (unsigned int d = 0; d < dim; ++d)
             {
@@ -405,6 +438,8 @@ namespace impm
       scene.grid = read_grid<dim>(prm, scene.constants);
     });
 
+    const bool lagrangian = scene.grid.method == GridMethod::lagrangian;
+
     std::map<std::string, std::shared_ptr<Material>> materials;
     in_section(prm, "Materials", [&]() {
       for (const auto &name : split_names(prm.get("Names")))
@@ -415,7 +450,7 @@ namespace impm
           materials[name]->average_volume = prm.get_bool("F-bar");
         });
     });
-    in_section(prm, "Time", [&]() { scene.time = read_time(prm); });
+    in_section(prm, "Time", [&]() { scene.time = read_time(prm, lagrangian); });
     in_section(prm, "Bodies", [&]() {
       std::set<std::string> taken(face_names().begin(), face_names().end());
       for (const auto &name : split_names(prm.get("Names")))
@@ -430,6 +465,7 @@ namespace impm
                                                   shapes,
                                                   materials,
                                                   scene.has_inertia(),
+                                                  lagrangian,
                                                   scene.constants));
           });
         }
@@ -437,7 +473,7 @@ namespace impm
     in_section(prm, "Boundary conditions", [&]() {
       for (unsigned int f = 0; f < 2 * dim; ++f)
         in_section(prm, face_names()[f], [&]() {
-          scene.faces[f] = read_face<dim>(prm, f, scene.constants);
+          scene.faces[f] = read_face<dim>(prm, f, lagrangian, scene.constants);
         });
     });
     in_section(prm, "Loads", [&]() {
@@ -447,11 +483,13 @@ namespace impm
         scene.body_force && prm.get("Coordinates") == "initial";
     });
     in_section(prm, "Solver", [&]() { scene.solver = read_solver(prm); });
-    in_section(prm, "Stabilization", [&]() {
-      scene.stabilization.ghost_penalty = prm.get_double("Ghost penalty");
-      scene.stabilization.isolated_stiffness =
-        scene.has_inertia() ? 0. : prm.get_double("Isolated stiffness");
-    });
+    scene.stabilization = {0, 0};
+    if (!lagrangian)
+      in_section(prm, "Stabilization", [&]() {
+        scene.stabilization.ghost_penalty = prm.get_double("Ghost penalty");
+        scene.stabilization.isolated_stiffness =
+          scene.has_inertia() ? 0. : prm.get_double("Isolated stiffness");
+      });
     in_section(prm, "Output", [&]() { scene.output = read_output<dim>(prm); });
     check(scene);
     // Nothing else holds what no body and no other shape uses.

@@ -1,4 +1,7 @@
+#include <deal.II/base/quadrature_lib.h>
 #include <deal.II/base/utilities.h>
+
+#include <deal.II/fe/fe_values.h>
 
 #include <impm/exceptions.h>
 #include <impm/point_file.h>
@@ -41,10 +44,11 @@ namespace impm
               unsigned int index  = k;
               for (unsigned int d = 0; d < dim; ++d)
                 {
-                  const double extent = cell->extent_in_direction(d);
-                  seed.domain[d]      = extent / n;
+                  const double extent   = cell->extent_in_direction(d);
+                  seed.domain[d]        = extent / n;
+                  seed.unit_position[d] = (index % n + 0.5) / n;
                   seed.position[d] =
-                    cell->vertex(0)[d] + (index % n + 0.5) / n * extent;
+                    cell->vertex(0)[d] + seed.unit_position[d] * extent;
                   volume *= seed.domain[d];
                   index /= n;
                 }
@@ -55,6 +59,58 @@ namespace impm
                 volume * circumference(scene.geometry, seed.position);
               seeds.push_back(seed);
             }
+    }
+
+    /** Gauss points, in cells that lie in the body as a whole. */
+    template <int dim>
+    void
+    seed_gauss_points(const Scene<dim>          &scene,
+                      const BodySpec<dim>       &body,
+                      const BackgroundGrid<dim> &grid,
+                      std::vector<Seed<dim>>    &seeds)
+    {
+      const QGauss<dim> quadrature(body.points_per_cell);
+      FEValues<dim>     values(*grid.mapping,
+                           grid.fe,
+                           quadrature,
+                           update_quadrature_points | update_JxW_values);
+      std::string       cut;
+      for (const auto &cell : grid.triangulation.active_cell_iterators())
+        if (cell->is_locally_owned())
+          {
+            values.reinit(cell);
+            unsigned int inside = 0;
+            for (const auto &x : values.get_quadrature_points())
+              inside += body.shape->contains(x);
+            if (inside == 0)
+              continue;
+            if (inside < quadrature.size())
+              {
+                std::ostringstream place;
+                place << cell->center();
+                cut = place.str();
+              }
+            for (const unsigned int q : values.quadrature_point_indices())
+              {
+                Seed<dim> seed;
+                seed.cell          = cell;
+                seed.position      = values.quadrature_point(q);
+                seed.unit_position = quadrature.point(q);
+                seed.volume =
+                  values.JxW(q) * circumference(scene.geometry, seed.position);
+                for (unsigned int d = 0; d < dim; ++d)
+                  seed.domain[d] =
+                    cell->extent_in_direction(d) / body.points_per_cell;
+                seeds.push_back(seed);
+              }
+          }
+      for (const auto &place :
+           Utilities::MPI::all_gather(grid.communicator, cut))
+        if (!place.empty())
+          throw InputError("Bodies/" + body.name + "/Shape",
+                           "the surface of body '" + body.name +
+                             "' cuts the cell around " + place +
+                             ", but a Lagrangian grid must fit its bodies");
     }
 
     template <int dim>
@@ -101,7 +157,9 @@ namespace impm
           Seed<dim> seed;
           seed.cell     = cells[p];
           seed.position = cloud.positions[p];
-          seed.volume   = body.rigid ? 1. : cloud.volumes[p];
+          seed.unit_position =
+            grid.mapping->transform_real_to_unit_cell(seed.cell, seed.position);
+          seed.volume = body.rigid ? 1. : cloud.volumes[p];
           const double extent =
             std::pow(seed.volume / circumference(scene.geometry, seed.position),
                      1. / dim);
@@ -119,7 +177,9 @@ namespace impm
             const BackgroundGrid<dim> &grid)
   {
     std::vector<Seed<dim>> seeds;
-    if (body.shape)
+    if (grid.is_lagrangian)
+      seed_gauss_points(scene, body, grid, seeds);
+    else if (body.shape)
       seed_shape(scene, body, grid, seeds);
     else
       seed_file(scene, body, grid, seeds);

@@ -80,6 +80,8 @@ namespace impm
   std::string
   Simulation<dim>::forbidden_motion() const
   {
+    if (grid.is_lagrangian)
+      return "";
     // Material that has not reached a face yet does not feel it: a long step
     // could carry it through.
     std::array<double, 2 * dim> faces;
@@ -230,6 +232,7 @@ namespace impm
     balance.end_motion(u, end_velocity, end_acceleration);
     advance_points(
       balance, scene.time.transfer, u, end_velocity, end_acceleration, points);
+    balance.carry_motion(grid, u, end_velocity, end_acceleration);
     bool grid_moves = false;
     for (unsigned int f = 0; f < 2 * dim; ++f)
       if (scene.faces[f].moves_grid)

@@ -118,7 +118,7 @@ namespace impm
       face.value->n_components == 1 ? 0 : component;
     const auto at = [&](const double t) {
       face.value->set_time(t);
-      return face.value->value(grid.node_positions()[node], expression);
+      return face.value->value(grid.initial_node_positions()[node], expression);
     };
     return face.is_velocity ? at(time + dt / 2) * dt : at(time + dt) - at(time);
   }

@@ -26,97 +26,7 @@ namespace impm
         values[d] = vector[d];
     }
 
-    /**
-     * Momentum of the affine part: m_p S_I C_p (x_I - x_p), where x_p is what
-     * the footprint makes of the nodes' places, so that its sum is zero.
-     */
-    template <int dim>
-    void
-    add_affine_momentum(const MaterialPoints<dim> &points,
-                        const Footprints<dim>     &footprints,
-                        const BackgroundGrid<dim> &grid,
-                        Vector                    &momentum)
-    {
-      const auto                 &nodes = grid.node_positions();
-      std::vector<Tensor<1, dim>> centre(points.size());
-      for (const auto &cell : footprints.cells)
-        for (unsigned int e = cell.begin; e < cell.end; ++e)
-          for (unsigned int n = 0; n < Footprints<dim>::n_nodes; ++n)
-            centre[footprints.point[e]] +=
-              footprints.value(e)[n] * Tensor<1, dim>(nodes[cell.nodes[n]]);
-      for (const auto &cell : footprints.cells)
-        for (unsigned int e = cell.begin; e < cell.end; ++e)
-          {
-            const unsigned int p = footprints.point[e];
-            const double      *C = points.fields(p) + points.offset_affine;
-            for (unsigned int n = 0; n < Footprints<dim>::n_nodes; ++n)
-              {
-                const double share = points.mass(p) * footprints.value(e)[n];
-                for (unsigned int c = 0; c < dim; ++c)
-                  for (unsigned int d = 0; d < dim; ++d)
-                    momentum.local_element(dim * cell.nodes[n] + c) +=
-                      share * C[dim * c + d] *
-                      (nodes[cell.nodes[n]][d] - centre[p][d]);
-              }
-          }
-    }
   } // namespace
-
-  template <int dim>
-  void
-  gather_motion(const MaterialPoints<dim>  &points,
-                const Footprints<dim>      &footprints,
-                const StepConstraints<dim> &constraints,
-                const BackgroundGrid<dim>  &grid,
-                Vector                     &mass,
-                Vector                     &velocity,
-                Vector                     &acceleration)
-  {
-    // Lumped; hanging nodes hand theirs to their masters, so that the sums
-    // over all nodes stay those over all points.
-    std::vector<Tensor<1, dim>> at_points(points.size());
-    const auto gather = [&](const auto &quantity, Vector &vector) {
-      for (unsigned int p = 0; p < points.size(); ++p)
-        at_points[p] = points.mass(p) * quantity(p);
-      vector = 0;
-      footprints.spread(at_points, vector);
-    };
-    const auto finish = [&](Vector &vector) {
-      vector.compress(VectorOperation::add);
-      constraints.condense_hanging(vector);
-    };
-    const auto divide_by_mass = [&](Vector &vector) {
-      for (unsigned int i = 0; i < mass.locally_owned_size(); ++i)
-        if (mass.local_element(i) > 0)
-          vector.local_element(i) /= mass.local_element(i);
-    };
-
-    Tensor<1, dim> ones;
-    for (unsigned int d = 0; d < dim; ++d)
-      ones[d] = 1;
-    gather([&](const unsigned int) { return ones; }, mass);
-    finish(mass);
-    gather(
-      [&](const unsigned int p) {
-        return load_vector<dim>(points.fields(p) + points.offset_velocity);
-      },
-      velocity);
-    if (points.offset_affine > 0)
-      add_affine_momentum(points, footprints, grid, velocity);
-    finish(velocity);
-    divide_by_mass(velocity);
-    if (points.offset_acceleration > 0)
-      {
-        gather(
-          [&](const unsigned int p) {
-            return load_vector<dim>(points.fields(p) +
-                                    points.offset_acceleration);
-          },
-          acceleration);
-        finish(acceleration);
-        divide_by_mass(acceleration);
-      }
-  }
 
   namespace
   {
@@ -256,32 +166,38 @@ namespace impm
     return outside;
   }
 
-#define INSTANTIATE(dim)                                                       \
-  template void   gather_motion(const MaterialPoints<dim> &,                   \
-                                const Footprints<dim> &,                       \
-                                const StepConstraints<dim> &,                  \
-                                const BackgroundGrid<dim> &,                   \
-                                Vector &,                                      \
-                                Vector &,                                      \
-                                Vector &);                                     \
-  template void   advance_points(const MomentumBalance<dim> &,                 \
-                                 TransferKind,                                 \
-                                 const Vector &,                               \
-                                 const Vector &,                               \
-                                 const Vector &,                               \
-                                 MaterialPoints<dim> &);                       \
-  template double largest_motion(                                              \
-    const MomentumBalance<dim> &,                                              \
-    const Vector &,                                                            \
-    const MaterialPoints<dim> &,                                               \
-    const std::function<Tensor<1, dim>(const Point<dim> &)> &);                \
-  template std::string find_point_outside(                                     \
-    const MomentumBalance<dim> &,                                              \
-    const Vector &,                                                            \
-    const MaterialPoints<dim> &,                                               \
-    const std::array<double, 2 * dim> &);
-
-  INSTANTIATE(2)
-  INSTANTIATE(3)
-#undef INSTANTIATE
+  template void
+  advance_points(const MomentumBalance<2> &,
+                 TransferKind,
+                 const Vector &,
+                 const Vector &,
+                 const Vector &,
+                 MaterialPoints<2> &);
+  template double
+  largest_motion(const MomentumBalance<2> &,
+                 const Vector &,
+                 const MaterialPoints<2> &,
+                 const std::function<Tensor<1, 2>(const Point<2> &)> &);
+  template std::string
+  find_point_outside(const MomentumBalance<2> &,
+                     const Vector &,
+                     const MaterialPoints<2> &,
+                     const std::array<double, 4> &);
+  template void
+  advance_points(const MomentumBalance<3> &,
+                 TransferKind,
+                 const Vector &,
+                 const Vector &,
+                 const Vector &,
+                 MaterialPoints<3> &);
+  template double
+  largest_motion(const MomentumBalance<3> &,
+                 const Vector &,
+                 const MaterialPoints<3> &,
+                 const std::function<Tensor<1, 3>(const Point<3> &)> &);
+  template std::string
+  find_point_outside(const MomentumBalance<3> &,
+                     const Vector &,
+                     const MaterialPoints<3> &,
+                     const std::array<double, 6> &);
 } // namespace impm

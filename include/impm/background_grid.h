@@ -9,12 +9,14 @@
 #include <deal.II/dofs/dof_handler.h>
 
 #include <deal.II/fe/fe_system.h>
-#include <deal.II/fe/mapping_cartesian.h>
+#include <deal.II/fe/mapping.h>
 
 #include <deal.II/lac/affine_constraints.h>
 #include <deal.II/lac/la_parallel_vector.h>
 
 #include <impm/scene.h>
+
+#include <memory>
 
 namespace impm
 {
@@ -23,7 +25,9 @@ namespace impm
 
   /**
    * The grid of one step: a p4est forest of axis-aligned boxes with Q1
-   * displacements. It carries nothing from one step to the next.
+   * displacements. It carries nothing from one step to the next, unless it is
+   * Lagrangian: then its nodes move with the material, and its cells may be
+   * any quadrilaterals.
    */
   template <int dim>
   class BackgroundGrid
@@ -56,7 +60,10 @@ namespace impm
 
     const MPI_Comm                                    communicator;
     dealii::parallel::distributed::Triangulation<dim> triangulation;
-    const dealii::MappingCartesian<dim>               mapping;
+    const bool                                        is_lagrangian;
+
+    /** From unit cells to where the grid was made. */
+    const std::unique_ptr<const dealii::Mapping<dim>> mapping;
     const dealii::FESystem<dim>                       fe;
     dealii::DoFHandler<dim>                           dof_handler;
     dealii::IndexSet                                  locally_relevant_dofs;
@@ -86,6 +93,17 @@ namespace impm
       return positions;
     }
 
+    /** The same where the nodes stood before carry() (m). */
+    const std::vector<dealii::Point<dim>> &
+    initial_node_positions() const
+    {
+      return is_lagrangian ? initial_positions : positions;
+    }
+
+    /** Moves the nodes of a Lagrangian grid; ghosts of `u` are up to date. */
+    void
+    carry(const Vector &u);
+
   private:
     void
     distribute_dofs();
@@ -94,7 +112,7 @@ namespace impm
     locate_nodes();
 
     dealii::Point<dim>              lower_corner, upper_corner;
-    std::vector<dealii::Point<dim>> positions;
+    std::vector<dealii::Point<dim>> positions, initial_positions;
     std::shared_ptr<const dealii::Utilities::MPI::Partitioner> partitioner;
   };
 } // namespace impm

@@ -71,6 +71,13 @@ namespace impm
     static void
     box_shape(const Piece &piece, double *values, double *gradients);
 
+    /** The Shape of a cell with any corners, by local number of its nodes. */
+    static void
+    mapped_shape(const Piece               &piece,
+                 const BackgroundGrid<dim> &grid,
+                 double                    *values,
+                 double                    *gradients);
+
     /**
      * Groups the points for the tangent. `coupled` has, for every point, a
      * number of those that must share a block whatever cells they touch, or

@@ -76,6 +76,16 @@ namespace impm
     void
     end_motion(const Vector &u, Vector &velocity, Vector &acceleration) const;
 
+    /**
+     * Where the nodes keep their motion, takes it over from one step to the
+     * next; elsewhere the points bring it. Moves a Lagrangian grid by `u`.
+     */
+    void
+    carry_motion(BackgroundGrid<dim> &grid,
+                 const Vector        &u,
+                 const Vector        &end_velocity,
+                 const Vector        &end_acceleration);
+
     /** Gradient of the potential (N); zero where constrained. */
     const Vector &
     residual() const
@@ -171,6 +181,9 @@ namespace impm
     void
     gather_load(double instant, Vector &load);
 
+    void
+    add_body_force(double instant, Vector &load);
+
     /** Forces at the start of the step, if the integrator weighs them. */
     void
     gather_start_forces();
@@ -214,6 +227,7 @@ namespace impm
     const bool                 axisymmetric;
     const unsigned int         n_gradients; ///< values of a gradient
     double                     time, dt;
+    bool                       nodes_have_motion = false;
 
     const std::unique_ptr<FootprintBuilder<dim>> builder;
     Footprints<dim>                              prints;

@@ -41,6 +41,8 @@ namespace impm
     std::array<unsigned int, dim> cells;
     GridMethod                    method        = GridMethod::mpm;
     bool                          boxes_stretch = true; ///< GIMP: with F
+    /** Lagrangian: where a place of the box really is, or null. */
+    std::shared_ptr<dealii::FunctionParser<dim>> map;
 
     /** Cells whose centre makes `refine_where` positive are split so often. */
     unsigned int                                 refinement_levels = 0;
@@ -77,6 +79,8 @@ namespace impm
     bool                  is_velocity = false;
     /** Prescribed displacement or velocity in (x, t); null means zero. */
     std::shared_ptr<dealii::FunctionParser<dim>> value;
+    /** Force per initial area (Pa), or null. */
+    std::shared_ptr<dealii::FunctionParser<dim>> traction;
   };
 
   /** A figure of the points in a column of the history. */

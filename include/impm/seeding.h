@@ -14,6 +14,7 @@ namespace impm
   {
     typename dealii::Triangulation<dim>::active_cell_iterator cell;
     dealii::Point<dim>                                        position;
+    dealii::Point<dim>                                        unit_position;
     double                 volume; ///< of the whole circle if axisymmetric
     dealii::Tensor<1, dim> domain; ///< extents of the box that it stands for
   };

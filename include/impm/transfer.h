@@ -6,21 +6,6 @@
 namespace impm
 {
   /**
-   * From points to grid at the start of a step: lumped mass (kg), velocity
-   * (m/s) with the momentum of the points, and acceleration if they carry
-   * one (m/s^2). Collective.
-   */
-  template <int dim>
-  void
-  gather_motion(const MaterialPoints<dim>  &points,
-                const Footprints<dim>      &footprints,
-                const StepConstraints<dim> &constraints,
-                const BackgroundGrid<dim>  &grid,
-                Vector                     &mass,
-                Vector                     &velocity,
-                Vector                     &acceleration);
-
-  /**
    * From grid to points at the end of a step that has converged at `u`:
    * positions, deformation, history and, with inertia, velocity and what else
    * they carry of the motion:

@@ -243,6 +243,26 @@ TEST(MomentumBalanceMpi, DerivativesOfBoxes)
 }
 
 
+TEST(MomentumBalanceMpi, DerivativesOfFiniteElements)
+{
+  const Overrides fitted = {"Grid/Method=Lagrangian",
+                            "Geometry/box/Upper corner=0.75, 0.5"};
+  const Overrides skew   = {"Grid/Map=x + 0.1*y; y*(1 - 0.2*x)",
+                            "Geometry/box/Lower corner=-9, -9",
+                            "Geometry/box/Upper corner=9, 9",
+                            "Boundary conditions/right/Type=traction",
+                            "Boundary conditions/right/Value=0; 0.01*y"};
+  check<2>("plane strain", fitted + refined, 0.01);
+  check<2>("plane strain", fitted + skew + f_bar, 0.01);
+  check<2>("axisymmetric", fitted + skew + trapezoidal + plastic, 0.01);
+  check<3>("3D",
+           fitted + refined +
+             Overrides{"Grid/Cells=3, 2, 2",
+                       "Geometry/box/Upper corner=9, 0.5, 1"},
+           0.01);
+}
+
+
 TEST(MomentumBalanceMpi, DerivativesWithMeanVolume)
 {
   const Overrides nearly_incompressible = {

@@ -254,6 +254,7 @@ namespace impm
       balance.end_motion(u, velocity, acceleration);
       advance_points(
         balance, scene.time.transfer, u, velocity, acceleration, points);
+      balance.carry_motion(grid, u, velocity, acceleration);
       points.sort();
       time += dt;
     }

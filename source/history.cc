@@ -43,6 +43,43 @@ namespace impm
   }
 
   template <int dim>
+  std::vector<std::string>
+  history_columns(const Scene<dim> &scene)
+  {
+    std::vector<std::string> names = {"step",
+                                      "time",
+                                      "dt",
+                                      "newton_iterations",
+                                      "linear_iterations",
+                                      "line_searches",
+                                      "step_cuts",
+                                      "points",
+                                      "active_cells",
+                                      "dofs",
+                                      "mass"};
+    for (unsigned int d = 0; d < dim; ++d)
+      names.push_back(std::string("momentum_") + "xyz"[d]);
+    names.insert(names.end(),
+                 {"kinetic_energy",
+                  "strain_energy",
+                  "plastic_work",
+                  "external_work",
+                  "wall_seconds"});
+    for (const auto &probe : scene.output.probes)
+      names.push_back(probe.name);
+    for (const auto &reaction : scene.output.reactions)
+      names.push_back(reaction.name);
+    names.insert(names.end(),
+                 {"residual",
+                  "tangent_projections",
+                  "solver_fallbacks",
+                  "noise_stops",
+                  "held_cells",
+                  "limited_boxes"});
+    return names;
+  }
+
+  template <int dim>
   History<dim>::History(const Scene<dim>           &scene,
                         const MaterialPoints<dim>  &points,
                         const RigidBodies<dim>     &rigid,
@@ -52,6 +89,7 @@ namespace impm
     , rigid(rigid)
     , balance(balance)
     , reactions(scene.output.reactions.size())
+    , columns(history_columns(scene))
   {
     for (unsigned int f = 0; f < 2 * dim; ++f)
       face_start[f] = balance.grid.face_position(f);
@@ -114,21 +152,9 @@ namespace impm
     if (Utilities::MPI::this_mpi_process(points.communicator) != 0)
       return;
     file.open(directory + "/history.csv");
-    file << "step,time,dt,newton_iterations,linear_iterations,line_searches,"
-            "step_cuts,points,active_cells,dofs,mass";
-    for (unsigned int d = 0; d < dim; ++d)
-      file << ",momentum_"
-           << "xyz"[d];
-    file << ",kinetic_energy,strain_energy,plastic_work,external_work,"
-            "wall_seconds";
-    for (const auto &probe : scene.output.probes)
-      file << ',' << probe.name;
-    for (const auto &reaction : scene.output.reactions)
-      file << ',' << reaction.name;
-    file
-      << ",residual,tangent_projections,solver_fallbacks,noise_stops,held_cells,"
-         "limited_boxes"
-      << std::endl;
+    for (const auto &name : columns)
+      file << (name == columns.front() ? "" : ",") << name;
+    file << std::endl;
     if (!file)
       throw SystemError("cannot write '" + directory + "/history.csv'");
   }
@@ -233,25 +259,60 @@ namespace impm
     if (Utilities::MPI::this_mpi_process(points.communicator) != 0)
       return;
 
-    file << std::setprecision(12) << report.step << ',' << report.time << ','
-         << report.dt << ',' << report.newton_iterations << ','
-         << report.linear_iterations << ',' << report.line_searches << ','
-         << report.step_cuts << ',' << n_points << ',' << active_cells << ','
-         << balance.n_active_dofs << ',' << totals.mass;
+    std::vector<double> row;
+    const auto          add = [&](const double value) { row.push_back(value); };
+    add(report.step);
+    add(report.time);
+    add(report.dt);
+    add(report.newton_iterations);
+    add(report.linear_iterations);
+    add(report.line_searches);
+    add(report.step_cuts);
+    add(n_points);
+    add(active_cells);
+    add(balance.n_active_dofs);
+    add(totals.mass);
     for (unsigned int d = 0; d < dim; ++d)
-      file << ',' << totals.momentum[d];
-    file << ',' << totals.kinetic_energy << ',' << totals.strain_energy << ','
-         << totals.plastic_work << ',' << report.external_work << ','
-         << report.wall_seconds;
+      add(totals.momentum[d]);
+    add(totals.kinetic_energy);
+    add(totals.strain_energy);
+    add(totals.plastic_work);
+    add(report.external_work);
+    add(report.wall_seconds);
     for (const auto &figure : figures)
-      file << ',' << figure.second;
-    file << ',' << report.residual << ',' << report.projections << ','
-         << report.solver_fallbacks << ',' << report.noise_stops << ','
-         << report.held_cells << ',' << report.limited_boxes << std::endl;
+      add(figure.second);
+    add(report.residual);
+    add(report.projections);
+    add(report.solver_fallbacks);
+    add(report.noise_stops);
+    add(report.held_cells);
+    add(report.limited_boxes);
+
+    file << std::setprecision(12);
+    for (unsigned int i = 0; i < row.size(); ++i)
+      file << (i > 0 ? "," : "") << row[i];
+    file << std::endl;
+    if (remembers)
+      rows.push_back(std::move(row));
     if (!file)
       throw SystemError("cannot write the history (disk full?)");
   }
 
+  template <int dim>
+  std::vector<double>
+  History<dim>::column(const std::string &name) const
+  {
+    const auto          i = std::find(columns.begin(), columns.end(), name);
+    std::vector<double> values;
+    for (const auto &row : rows)
+      values.push_back(row.at(i - columns.begin()));
+    return values;
+  }
+
+  template std::vector<std::string>
+  history_columns(const Scene<2> &);
+  template std::vector<std::string>
+  history_columns(const Scene<3> &);
   template class History<2>;
   template class History<3>;
   template Totals<2>

@@ -1,6 +1,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <impm/exceptions.h>
+#include <impm/finer_run.h>
 #include <impm/parameter_listing.h>
 #include <impm/simulation.h>
 #include <impm/version.h>
@@ -18,15 +19,11 @@ namespace
   void
   run(const CommandLine &line, ParameterFile &file)
   {
-    const Scene<dim> scene = read_scene<dim>(file.handler());
+    const Scene<dim> scene =
+      read_scene<dim>(file.handler(), line.parameter_file);
     if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
       for (const auto &warning : scene.warnings)
         std::cerr << "impm_dealii: warning: " << warning << std::endl;
-    Simulation<dim> simulation(scene, line.verbosity, MPI_COMM_WORLD);
-    simulation.describe();
-    if (line.action == CommandLine::Action::check)
-      return;
-
     const std::string name =
       std::filesystem::path(line.parameter_file).stem().string();
     std::string directory = line.output_directory;
@@ -34,12 +31,14 @@ namespace
       directory = scene.output.directory;
     if (directory.empty())
       directory = "output/" + name;
-    std::ostringstream parameters;
-    file.handler().print_parameters(
-      parameters,
-      dealii::ParameterHandler::ShortPRM |
-        dealii::ParameterHandler::KeepDeclarationOrder);
-    simulation.run(directory, name, parameters.str());
+
+    Simulation<dim>        simulation(scene, line.verbosity, MPI_COMM_WORLD);
+    const FinerRunner<dim> finer(scene, line, directory, MPI_COMM_WORLD);
+    simulation.describe();
+    if (line.action == CommandLine::Action::check)
+      return;
+    const auto finer_runs = finer.run();
+    simulation.run(directory, name, file.resolved(), finer_runs);
   }
 
   void

@@ -110,7 +110,7 @@ namespace impm
     layout.add("deformation_gradient", Kind::tensor);
 
     const auto &output = scene.output;
-    const bool  wants_displacement =
+    const bool  wants_initial_position =
       std::count(output.point_fields.begin(),
                  output.point_fields.end(),
                  "displacement") > 0 ||
@@ -118,6 +118,11 @@ namespace impm
                   output.probes.end(),
                   [](const ProbeSpec &probe) {
                     return probe.field == "displacement";
+                  }) ||
+      std::any_of(scene.references.begin(),
+                  scene.references.end(),
+                  [](const ReferenceSpec<dim> &reference) {
+                    return !reference.field.empty();
                   });
     if (scene.has_inertia())
       layout.add("velocity", Kind::vector);
@@ -126,7 +131,7 @@ namespace impm
     if (scene.has_inertia() && scene.time.transfer == TransferKind::apic)
       for (unsigned int d = 0; d < dim; ++d)
         layout.add(std::string("velocity_gradient_") + "xyz"[d], Kind::vector);
-    if (wants_displacement || scene.body_force_is_initial)
+    if (wants_initial_position || scene.body_force_is_initial)
       layout.add("initial_position", Kind::vector);
     if (scene.grid.method == GridMethod::gimp ||
         std::any_of(output.probes.begin(),

@@ -5,6 +5,8 @@
 #include <impm/parameter_file.h>
 #include <impm/parameter_messages.h>
 
+#include <algorithm>
+#include <cstring>
 #include <fstream>
 #include <sstream>
 
@@ -110,6 +112,28 @@ namespace impm
     parse(text, file_name);
     for (const auto &override : overrides)
       parse(override_as_text(override), "--set " + override);
+  }
+
+  std::string
+  ParameterFile::resolved(const std::vector<std::string> &without) const
+  {
+    std::stringstream all;
+    prm->print_parameters(all,
+                          dealii::ParameterHandler::ShortPRM |
+                            dealii::ParameterHandler::KeepDeclarationOrder);
+    // Only sections of the top are not indented.
+    std::string text, line;
+    bool        skips = false;
+    while (std::getline(all, line))
+      {
+        if (line.rfind("subsection ", 0) == 0)
+          skips = std::count(without.begin(),
+                             without.end(),
+                             line.substr(std::strlen("subsection "))) > 0;
+        if (!skips)
+          text += line + "\n";
+      }
+    return text;
   }
 
   std::string

@@ -39,7 +39,8 @@ namespace impm
         {"Time/Integrator", "any"},
         {"Solver/Linear solver", "GMRES"},
         {"Output/Probes", "point,largest,extent,motion"},
-        {"Output/Reactions", "reaction"}};
+        {"Output/Reactions", "reaction"},
+        {"Reference/Names", "field,probe,curve,finer run"}};
       const auto choice = choices.find(path);
       if (choice != choices.end())
         return choice->second;

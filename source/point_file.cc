@@ -1,6 +1,7 @@
 #include <deal.II/base/exceptions.h>
 #include <deal.II/base/utilities.h>
 
+#include <impm/csv.h>
 #include <impm/exceptions.h>
 #include <impm/point_file.h>
 
@@ -70,24 +71,13 @@ namespace impm
         }
     }
 
-    std::vector<std::string>
-    split_line(const std::string &line)
-    {
-      // The function ignores one comma at the end, but an empty last field
-      // counts: it may be in a column that nobody reads.
-      auto fields = Utilities::split_string_list(Utilities::trim(line) + ",");
-      for (auto &field : fields)
-        field = Utilities::trim(field);
-      return fields;
-    }
-
     /** Which columns are x, y, z and volume. */
     std::map<std::string, std::size_t>
     read_header(const std::string &line, const int dim)
     {
       const std::string byte_order_mark = "\xEF\xBB\xBF"; // from spreadsheets
       const bool        has_mark = boost::starts_with(line, byte_order_mark);
-      const auto        names    = split_line(boost::to_lower_copy(
+      const auto        names    = split_csv_line(boost::to_lower_copy(
         line.substr(has_mark ? byte_order_mark.size() : 0)));
 
       std::map<std::string, std::size_t> columns;
@@ -111,12 +101,12 @@ namespace impm
       std::string line;
       std::getline(in, line);
       const auto        columns   = read_header(line, dim);
-      const std::size_t n_columns = split_line(line).size();
+      const std::size_t n_columns = split_csv_line(line).size();
 
       Content content;
       for (unsigned int number = 2; std::getline(in, line); ++number)
         {
-          const auto fields = split_line(line);
+          const auto fields = split_csv_line(line);
           if (fields.size() == 1 && fields.front().empty())
             continue; // a blank line
           const std::string place = "line " + std::to_string(number);

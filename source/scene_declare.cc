@@ -588,5 +588,6 @@ namespace impm
     declare_solver(prm, chosen);
     declare_stabilization(prm, chosen);
     declare_output(prm, chosen);
+    declare_references(prm, chosen);
   }
 } // namespace impm

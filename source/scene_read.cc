@@ -413,7 +413,7 @@ namespace impm
 
   template <int dim>
   Scene<dim>
-  read_scene(ParameterHandler &prm)
+  read_scene(ParameterHandler &prm, const std::string &parameter_file)
   {
     Scene<dim> scene;
     in_section(prm, "General", [&]() {
@@ -491,6 +491,10 @@ namespace impm
           scene.has_inertia() ? 0. : prm.get_double("Isolated stiffness");
       });
     in_section(prm, "Output", [&]() { scene.output = read_output<dim>(prm); });
+    in_section(prm, "Reference", [&]() {
+      scene.references =
+        read_references<dim>(prm, scene.constants, parameter_file);
+    });
     check(scene);
     // Nothing else holds what no body and no other shape uses.
     for (const auto &[name, shape] : shapes)
@@ -503,7 +507,7 @@ namespace impm
   }
 
   template Scene<2>
-  read_scene<2>(ParameterHandler &);
+  read_scene<2>(ParameterHandler &, const std::string &);
   template Scene<3>
-  read_scene<3>(ParameterHandler &);
+  read_scene<3>(ParameterHandler &, const std::string &);
 } // namespace impm

@@ -45,6 +45,7 @@ namespace impm
         scene.solver, balance, linear_solver, all_have_potential(scene), timer)
     , pictures(scene.output, points, rigid, balance)
     , history(scene, points, rigid, balance)
+    , reference(scene, points, history)
     , console(verbosity, Utilities::MPI::this_mpi_process(communicator) == 0)
     , step_size(scene.time.step)
   {
@@ -271,7 +272,8 @@ namespace impm
   template <int dim>
   void
   Simulation<dim>::write_summary(const std::string &scene_name,
-                                 const std::string &status)
+                                 const std::string &status,
+                                 const FinerRuns   &finer_runs)
   {
     RunSummary summary;
     summary.scene           = scene_name;
@@ -295,16 +297,22 @@ namespace impm
     summary.figures      = history.last_figures();
     summary.phases       = timer.get_summary_data(TimerOutput::total_wall_time);
     summary.wall_seconds = wall.wall_time();
-    summary.write(directory, communicator);
     if (status == "done")
-      console.message(summary.phase_table());
+      summary.errors = reference.errors(time, finer_runs);
+    summary.write(directory, communicator);
+    if (status != "done")
+      return;
+    console.message(summary.phase_table());
+    if (!summary.errors.empty())
+      console.message(summary.error_table());
   }
 
   template <int dim>
   void
   Simulation<dim>::run(const std::string &directory,
                        const std::string &scene_name,
-                       const std::string &parameters)
+                       const std::string &parameters,
+                       const FinerRuns   &finer_runs)
   {
     this->directory = directory;
     if (Utilities::MPI::this_mpi_process(communicator) == 0)
@@ -330,6 +338,11 @@ namespace impm
           {
             advance();
             history.write(report);
+            if (reference.follows_steps())
+              {
+                TimerOutput::Scope scope(timer, "references");
+                reference.follow_step(time);
+              }
             console.step(report,
                          scene.time.end,
                          points.sorted.n_global(),
@@ -348,10 +361,10 @@ namespace impm
     catch (const ComputationError &error)
       {
         save_last_good_state(error.what());
-        write_summary(scene_name, error.what());
+        write_summary(scene_name, error.what(), {});
         throw;
       }
-    write_summary(scene_name, "done");
+    write_summary(scene_name, "done", finer_runs);
   }
 
   template class Simulation<2>;

@@ -6,7 +6,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cstdio>
+#include <iomanip>
+#include <sstream>
 
 namespace impm
 {
@@ -39,7 +42,23 @@ namespace impm
       json["wall_seconds_by_phase"][name] = seconds;
     json["peak_memory_kilobytes"] = peak;
     json["wall_seconds"]          = wall_seconds;
-    json["errors"]                = nlohmann::ordered_json::object();
+    json["errors"]                = nlohmann::ordered_json::array();
+    // Numbers that are not finite become null.
+    for (const auto &error : errors)
+      {
+        nlohmann::ordered_json record = {{"name", error.name},
+                                         {"kind", error.kind},
+                                         {"norm", error.norm},
+                                         {"value", error.value},
+                                         {"reference", error.reference},
+                                         {"error", error.error},
+                                         {"wall_seconds", wall_seconds}};
+        if (error.reference_wall_seconds)
+          record["reference_wall_seconds"] = *error.reference_wall_seconds;
+        if (!error.flaw.empty())
+          record["flaw"] = error.flaw;
+        json["errors"].push_back(record);
+      }
     replace_file(directory + "/summary.json", json.dump(2) + "\n");
   }
 
@@ -67,5 +86,28 @@ namespace impm
     add("all", wall_seconds);
     table.pop_back();
     return table;
+  }
+
+  std::string
+  RunSummary::error_table() const
+  {
+    std::size_t width = 0;
+    for (const auto &error : errors)
+      width = std::max(width, error.name.size());
+    std::ostringstream table;
+    for (const auto &error : errors)
+      {
+        table << (table.tellp() > 0 ? "\n" : "") << "  " << std::left
+              << std::setw(width) << error.name << "  error " << std::scientific
+              << std::setprecision(2) << error.error << " (" << error.norm
+              << ")  " << std::defaultfloat << std::setprecision(7) << "value "
+              << error.value << "  reference " << error.reference << "  in "
+              << std::setprecision(3) << wall_seconds << " s";
+        if (error.reference_wall_seconds)
+          table << " (finer run: " << *error.reference_wall_seconds << " s)";
+        if (!error.flaw.empty())
+          table << "  not a number: " << error.flaw;
+      }
+    return table.str();
   }
 } // namespace impm

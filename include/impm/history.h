@@ -40,6 +40,11 @@ namespace impm
   Totals<dim>
   total(const MaterialPoints<dim> &points);
 
+  /** Names of the columns of history.csv in their order. */
+  template <int dim>
+  std::vector<std::string>
+  history_columns(const Scene<dim> &scene);
+
   /** history.csv: a header line, then a row a step, each on disk at once. */
   template <int dim>
   class History
@@ -69,6 +74,17 @@ namespace impm
     void
     write(const StepReport &report);
 
+    /** From now on the first rank remembers its rows. */
+    void
+    remember_rows()
+    {
+      remembers = true;
+    }
+
+    /** A column of the rows so far, on the first rank. */
+    std::vector<double>
+    column(const std::string &name) const;
+
     const std::vector<std::pair<std::string, double>> &
     last_figures() const
     {
@@ -94,6 +110,9 @@ namespace impm
     std::array<double, 2 * dim>                 face_start;
     std::vector<std::pair<std::string, double>> figures;
     std::ofstream                               file;
+    const std::vector<std::string>              columns;
+    std::vector<std::vector<double>>            rows;
+    bool                                        remembers = false;
   };
 } // namespace impm
 

@@ -47,6 +47,10 @@ namespace impm
       return *prm;
     }
 
+    /** All entries as text that reads back, without some of the sections. */
+    std::string
+    resolved(const std::vector<std::string> &without = {}) const;
+
     /** Where an entry was last set: an override, or file and line. */
     std::string
     locate(const std::string &path) const;

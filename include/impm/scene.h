@@ -7,6 +7,7 @@
 #include <impm/materials/material.h>
 #include <impm/parameter_file.h>
 #include <impm/point_layout.h>
+#include <impm/reference_spec.h>
 #include <impm/shapes.h>
 
 #include <array>
@@ -169,8 +170,9 @@ namespace impm
     bool       body_force_is_initial = false; ///< a function of initial places
     TimeSpec   time;
     SolverSpec solver;
-    StabilizationSpec stabilization;
-    OutputSpec        output;
+    StabilizationSpec               stabilization;
+    OutputSpec                      output;
+    std::vector<ReferenceSpec<dim>> references;
 
     /** What the file names to no effect. */
     std::vector<std::string> warnings;
@@ -197,10 +199,14 @@ namespace impm
   int
   scene_dimension(dealii::ParameterHandler &prm);
 
-  /** Reads the scene and checks what no single entry can tell. */
+  /**
+   * Reads the scene and checks what no single entry can tell. Curves of
+   * references may lie beside the parameter file.
+   */
   template <int dim>
   Scene<dim>
-  read_scene(dealii::ParameterHandler &prm);
+  read_scene(dealii::ParameterHandler &prm,
+             const std::string        &parameter_file = "");
 } // namespace impm
 
 #endif

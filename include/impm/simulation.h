@@ -9,6 +9,7 @@
 #include <impm/history.h>
 #include <impm/newton_solver.h>
 #include <impm/pictures.h>
+#include <impm/reference.h>
 
 namespace impm
 {
@@ -36,12 +37,13 @@ namespace impm
     /**
      * Runs to the end and writes into a directory, with the resolved
      * parameters. Throws ComputationError after it has saved the last good
-     * state. Collective.
+     * state. The first rank compares with finer runs. Collective.
      */
     void
     run(const std::string &directory,
         const std::string &scene_name,
-        const std::string &parameters);
+        const std::string &parameters,
+        const FinerRuns   &finer_runs = {});
 
   private:
     void
@@ -67,7 +69,9 @@ namespace impm
     save_last_good_state(const std::string &reason);
 
     void
-    write_summary(const std::string &scene_name, const std::string &status);
+    write_summary(const std::string &scene_name,
+                  const std::string &status,
+                  const FinerRuns   &finer_runs);
 
     double
     grid_motion(unsigned int face) const;
@@ -85,6 +89,7 @@ namespace impm
     NewtonSolver<dim>                     newton;
     Pictures<dim>                         pictures;
     History<dim>                          history;
+    Reference<dim>                        reference;
     Console                               console;
     Vector                                u, end_velocity, end_acceleration;
 

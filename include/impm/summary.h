@@ -4,12 +4,24 @@
 #include <deal.II/base/mpi.h>
 
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace impm
 {
+  /** How wrong a run is by one of its references. */
+  struct ReferenceError
+  {
+    std::string name, kind, norm;
+    /** Norms over the points; of a probe or curve the (last) figures. */
+    double                value, reference;
+    double                error;
+    std::string           flaw; ///< why the error is not a number
+    std::optional<double> reference_wall_seconds; ///< of a finer run
+  };
+
   /** summary.json: what a run was, what it cost and what it gave. */
   struct RunSummary
   {
@@ -22,6 +34,7 @@ namespace impm
     std::vector<std::pair<std::string, double>>        figures; ///< last row
     std::map<std::string, double> phases; ///< wall seconds of rank 0
     double                        wall_seconds;
+    std::vector<ReferenceError>   errors;
 
     /** Collective, for the peak of memory over all ranks. */
     void
@@ -30,6 +43,10 @@ namespace impm
     /** Wall time by phase, for the terminal. */
     std::string
     phase_table() const;
+
+    /** A line for each error, beside the run time. */
+    std::string
+    error_table() const;
   };
 } // namespace impm
 

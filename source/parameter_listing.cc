@@ -2,6 +2,7 @@
 #include <impm/parameter_listing.h>
 #include <impm/parameter_messages.h>
 #include <impm/scene.h>
+#include <impm/study.h>
 
 #include <nlohmann/json.hpp>
 
@@ -39,7 +40,8 @@ namespace impm
         {"Time/Integrator", "any"},
         {"Solver/Linear solver", "GMRES"},
         {"Output/Probes", "point,largest,extent,motion"},
-        {"Output/Reactions", "reaction"}};
+        {"Output/Reactions", "reaction"},
+        {"Study/Lists", "list"}};
       const auto choice = choices.find(path);
       if (choice != choices.end())
         return choice->second;
@@ -83,7 +85,7 @@ namespace impm
   print_parameter_listing(std::ostream &out)
   {
     dealii::ParameterHandler prm;
-    declare_scene(prm, choose_everything);
+    declare_file(prm, choose_everything);
     std::stringstream listing;
     prm.print_parameters(listing,
                          dealii::ParameterHandler::JSON |

@@ -19,8 +19,9 @@ from pathlib import Path
 import matplotlib
 
 matplotlib.use("Agg")
+matplotlib.rcParams["svg.hashsalt"] = "impm_dealii"
 import matplotlib.pyplot as plt
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+from matplotlib.ticker import AutoLocator, FuncFormatter, LogLocator, NullFormatter
 
 MARKERS = "osD^vP*X<>"
 
@@ -73,27 +74,32 @@ def points(rows, x, y):
 
 
 def tidy(axes):
-    """Labels at 1, 2, 5 where less than two decades are seen, else at powers."""
-    for axis, limits in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, axes.get_ylim())):
-        narrow = limits[1] / limits[0] < 100
-        axis.set_major_locator(LogLocator(subs=(1, 2, 5) if narrow else (1,)))
+    """Ticks that can be told apart however many decades are seen."""
+    for axis, (low, high) in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, axes.get_ylim())):
+        if high / low < 5:
+            axis.set_major_locator(AutoLocator())
+        elif high / low < 100:
+            axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
         axis.set_minor_formatter(NullFormatter())
-        if narrow:
+        if high / low < 100:
             axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:.3g}"))
     axes.grid(alpha=0.3)
 
 
 def draw_slopes(axes, all_points):
-    """Lines of order 1 and 2 through a point below all errors."""
+    """Lines of order 1 and 2 from below the best of the coarsest runs."""
     sizes = [x for x, _ in all_points]
     if len(set(sizes)) < 2:
         return
     right, left = max(sizes), min(sizes)
-    foot = 0.6 * min(y * (right / x) ** 1 for x, y in all_points)
+    foot = 0.6 * min(y for x, y in all_points if x == right)
+    # They shall not stretch the diagram.
+    lowest = min(0.6 * min(y for _, y in all_points), 0.2 * foot)
     for order, style in ((1, ":"), (2, "--")):
+        end = max(left, right * (lowest / foot) ** (1 / order))
         axes.plot(
-            [left, right],
-            [foot * (left / right) ** order, foot],
+            [end, right],
+            [foot * (end / right) ** order, foot],
             style,
             color="gray",
             linewidth=1,
@@ -113,7 +119,9 @@ def draw(study, lines, error, out):
     size_points = []
     for i, (name, rows) in enumerate(lines.items()):
         failed = sum(row["status"] != "done" for row in rows)
-        label = (name or error) + (f" ({failed} of {len(rows)} failed)" if failed else "")
+        label = name or error
+        if failed:
+            label += f" ({failed} of {len(rows)} failed)"
         style = {
             "marker": MARKERS[i % len(MARKERS)],
             "color": f"C{i % 10}",
@@ -121,7 +129,9 @@ def draw(study, lines, error, out):
             "markersize": 5,
         }
         # Along the sizes, since run times need not be in order.
-        ordered = sorted(rows, key=lambda row: -float(row[along + "_size"])) if along else rows
+        ordered = rows
+        if has_sizes:
+            ordered = sorted(rows, key=lambda row: -float(row[along + "_size"]))
         data = points(ordered, "wall_seconds", column)
         over_time.plot(*zip(*data) if data else ([], []), label=label, **style)
         if has_sizes:
@@ -153,8 +163,10 @@ def draw(study, lines, error, out):
         handles, labels, loc="center left", bbox_to_anchor=(1, 0.5), frameon=False
     )
     for ending in ("png", "svg"):
-        name = f"{out}_{error}.{ending}"
-        figure.savefig(name, dpi=130, bbox_inches="tight", metadata={"Date": None} if ending == "svg" else None)
+        name = f"{out}_{error.replace(' ', '_')}.{ending}"
+        # Without the date, the same study gives the same file.
+        metadata = {"Date": None} if ending == "svg" else None
+        figure.savefig(name, dpi=130, bbox_inches="tight", metadata=metadata)
         print(name)
     plt.close(figure)
 

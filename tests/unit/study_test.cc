@@ -21,19 +21,20 @@ namespace
   }
 
   std::string
-  list(const std::string &name, const std::string &lines)
+  list_of(const std::string &name, const std::string &lines)
   {
     return "subsection " + name + "\n" + lines + "end\n";
   }
 
   const std::string grid =
-    list("grid", "set Entries = Grid/Cells\nset Values = 4, 4 | 8, 8\n");
+    list_of("grid", "set Entries = Grid/Cells\nset Values = 4, 4 | 8, 8\n");
   const std::string grid_with_sizes =
-    list("grid",
-         "set Entries = Grid/Cells\nset Values = 4, 4 | 8, 8\n"
-         "set Labels = coarse, fine\nset Sizes = 0.25, 0.125\n");
+    list_of("grid",
+            "set Entries = Grid/Cells\nset Values = 4, 4 | 8, 8\n"
+            "set Labels = coarse, fine\nset Sizes = 0.25, 0.125\n");
   const std::string step =
-    list("dt", "set Entries = Time/Time step\nset Values = 1 | 0.5 | 0.25\n");
+    list_of("dt",
+            "set Entries = Time/Time step\nset Values = 1 | 0.5 | 0.25\n");
 
   void
   expect_blame(const std::string &lines,
@@ -93,7 +94,7 @@ TEST(Study, PairedLists)
 {
   const auto runs =
     expand(study("set Lists = grid, n\nset Combine = paired\n" + grid +
-                 list("n", "set Entries = ranks\nset Values = 1 | 2\n")));
+                 list_of("n", "set Entries = ranks\nset Values = 1 | 2\n")));
   ASSERT_EQ(runs.size(), 2u);
   EXPECT_EQ(runs[1].name, "8-8_2");
   EXPECT_EQ(runs[1].ranks, 2u);
@@ -105,10 +106,10 @@ TEST(Study, SeveralEntriesOfOneList)
 {
   const auto spec = study(
     "set Lists = solver\n" +
-    list("solver",
-         "set Entries = Solver/Linear solver; Solver/Preconditioner; ranks\n"
-         "set Values = CG; AMG; 2 | direct;; 1\n"
-         "set Labels = AMG, direct\n"));
+    list_of("solver",
+            "set Entries = Solver/Linear solver; Solver/Preconditioner; ranks\n"
+            "set Values = CG; AMG; 2 | direct;; 1\n"
+            "set Labels = AMG, direct\n"));
   const auto runs = expand(spec);
   EXPECT_EQ(runs[0].overrides,
             (Overrides{"Solver/Linear solver=CG",
@@ -125,7 +126,7 @@ TEST(Study, OneEntryWithSemicolons)
 {
   const auto runs = expand(study(
     "set Lists = v\n" +
-    list("v", "set Entries = Bodies/b/Velocity\nset Values = 0; 1|1; 0\n")));
+    list_of("v", "set Entries = Bodies/b/Velocity\nset Values = 0; 1|1; 0\n")));
   EXPECT_EQ(runs[0].overrides, Overrides{"Bodies/b/Velocity=0; 1"});
 }
 
@@ -134,38 +135,39 @@ TEST(Study, ListsThatDoNotFit)
 {
   const std::string lists = "set Lists = grid\n";
   expect_blame("", "Study/Lists", "found ''");
-  expect_blame("set Lists = status\n" + list("status", ""),
+  expect_blame("set Lists = status\n" + list_of("status", ""),
                "Study/Lists",
                "taken");
-  expect_blame(lists + list("grid", "set Entries = Cells\nset Values = 1\n"),
+  expect_blame(lists + list_of("grid", "set Entries = Cells\nset Values = 1\n"),
                "Study/grid/Entries",
                "'Cells'");
-  expect_blame(lists + list("grid", "set Entries = Grid/Cells\n"),
+  expect_blame(lists + list_of("grid", "set Entries = Grid/Cells\n"),
                "Study/grid/Values",
                "found ''");
-  expect_blame(lists + list("grid",
-                            "set Entries = Grid/Cells; Time/Time step\n"
-                            "set Values = 4, 4; 1 | 8, 8\n"),
+  expect_blame(lists + list_of("grid",
+                               "set Entries = Grid/Cells; Time/Time step\n"
+                               "set Values = 4, 4; 1 | 8, 8\n"),
                "Study/grid/Values",
                "allowed are 2 parts");
-  expect_blame(lists + list("grid",
-                            "set Entries = Grid/Cells\nset Values = 4 | 8\n"
-                            "set Labels = coarse\n"),
+  expect_blame(lists + list_of("grid",
+                               "set Entries = Grid/Cells\nset Values = 4 | 8\n"
+                               "set Labels = coarse\n"),
                "Study/grid/Labels",
                "allowed are 2");
-  expect_blame(lists + list("grid",
-                            "set Entries = Grid/Cells\nset Values = 4 | 8\n"
-                            "set Sizes = 1, 2, 3\n"),
+  expect_blame(lists + list_of("grid",
+                               "set Entries = Grid/Cells\nset Values = 4 | 8\n"
+                               "set Sizes = 1, 2, 3\n"),
                "Study/grid/Sizes",
                "allowed are 2");
-  expect_blame(lists + list("grid", "set Entries = ranks\nset Values = 0\n"),
+  expect_blame(lists + list_of("grid", "set Entries = ranks\nset Values = 0\n"),
                "Study/grid/Values",
                "at least 1");
   expect_blame("set Lists = grid, dt\nset Combine = paired\n" + grid + step,
                "Study/dt/Values",
                "found 3");
   expect_blame("set Lists = grid, more\n" + grid +
-                 list("more", "set Entries = Grid/Cells\nset Values = 3, 3\n"),
+                 list_of("more",
+                         "set Entries = Grid/Cells\nset Values = 3, 3\n"),
                "Study/more/Entries",
                "second time");
   expect_blame(lists + "set Order along = grid\n" + grid,
@@ -175,8 +177,8 @@ TEST(Study, ListsThatDoNotFit)
                "Study/Order along",
                "'dt'");
   expect_blame(lists +
-                 list("grid",
-                      "set Entries = Grid/Cells\nset Values = 4,4|4, 4\n"),
+                 list_of("grid",
+                         "set Entries = Grid/Cells\nset Values = 4,4|4, 4\n"),
                "Study/Lists",
                "'4-4'");
 }
@@ -185,10 +187,11 @@ TEST(Study, ListsThatDoNotFit)
 // Errors C h^2, but for the one that failed: order 2 across it, too.
 TEST(Study, Orders)
 {
-  const auto spec = study(
-    "set Lists = law, dt\n" +
-    list("law", "set Entries = Materials/m/Law\nset Values = soft | hard\n") +
-    step);
+  const auto spec =
+    study("set Lists = law, dt\n" +
+          list_of("law",
+                  "set Entries = Materials/m/Law\nset Values = soft | hard\n") +
+          step);
   const auto   runs = expand(spec);
   StudyResults results(6);
   results[0] = result(0.5, 1);
@@ -244,9 +247,11 @@ TEST(Study, OrdersOfPairedLists)
 {
   const auto spec = study(
     "set Lists = grid, dt, law\nset Combine = paired\n" +
-    list("grid", "set Entries = Grid/Cells\nset Values = 4 | 8 | 4 | 8\n") +
-    list("dt", "set Entries = Time/Time step\nset Values = 4 | 2 | 4 | 2\n") +
-    list("law", "set Entries = Materials/m/Law\nset Values = a | a | b | b\n"));
+    list_of("grid", "set Entries = Grid/Cells\nset Values = 4 | 8 | 4 | 8\n") +
+    list_of("dt",
+            "set Entries = Time/Time step\nset Values = 4 | 2 | 4 | 2\n") +
+    list_of("law",
+            "set Entries = Materials/m/Law\nset Values = a | a | b | b\n"));
   const auto   runs = expand(spec);
   StudyResults results(4);
   for (unsigned int r = 0; r < 4; ++r)

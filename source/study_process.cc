@@ -52,24 +52,26 @@ namespace impm
       return words;
     }
 
-    /** Where a run says why it failed: its own last message, or the end. */
+    /** Why a run failed: its own last message, or what came first. */
     std::string
-    last_message(const std::string &log)
+    reason(const std::string &log)
     {
       std::istringstream in(log);
-      std::string        line, message, last;
+      std::string        line, message, first;
       const std::string  own = "impm_dealii: ";
       std::getline(in, line); // the command
       while (std::getline(in, line))
-        {
-          // MPI draws lines of dashes.
-          if (line.find_first_not_of("- \t\r") != std::string::npos)
-            last = line;
-          if (line.rfind(own, 0) == 0 &&
-              line.rfind(own + "warning: ", 0) == std::string::npos)
-            message = line.substr(own.size());
-        }
-      return message.empty() ? last : message;
+        if (line.rfind(own + "warning: ", 0) == 0)
+          continue;
+        else if (line.rfind(own, 0) == 0)
+          message = line.substr(own.size());
+        // mpirun draws lines of dashes.
+        else if (first.empty() &&
+                 line.find_first_not_of("- \t\r") != std::string::npos)
+          first = line;
+      if (message.empty() && first.empty())
+        return "no message";
+      return message.empty() ? first : message;
     }
   } // namespace
 
@@ -115,7 +117,7 @@ namespace impm
       }
     result.exit_code = WEXITSTATUS(state);
     if (result.exit_code != 0 || !result.done())
-      result.status = last_message(read_whole(log));
+      result.status = reason(read_whole(log));
     return result;
   }
 

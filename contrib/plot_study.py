@@ -21,7 +21,13 @@ import matplotlib
 matplotlib.use("Agg")
 matplotlib.rcParams["svg.hashsalt"] = "impm_dealii"
 import matplotlib.pyplot as plt
-from matplotlib.ticker import AutoLocator, FuncFormatter, LogLocator, NullFormatter
+from matplotlib.ticker import (
+    AutoLocator,
+    FixedLocator,
+    FuncFormatter,
+    LogLocator,
+    NullFormatter,
+)
 
 MARKERS = "osD^vP*X<>"
 
@@ -48,8 +54,7 @@ def lines_of(study, rows):
     lines = defaultdict(list)
     for row in rows:
         name = ", ".join(
-            row[n] if len(other) == 1 or not is_number(row[n]) else f"{n} {row[n]}"
-            for n in other
+            f"{n} {row[n]}" if is_number(row[n]) else row[n] for n in other
         )
         lines[name].append(row)
     return lines
@@ -75,7 +80,8 @@ def points(rows, x, y):
 
 def tidy(axes):
     """Ticks that can be told apart however many decades are seen."""
-    for axis, (low, high) in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, axes.get_ylim())):
+    for axis in (axes.xaxis, axes.yaxis):
+        low, high = axis.get_view_interval()
         if high / low < 5:
             axis.set_major_locator(AutoLocator())
         elif high / low < 100:
@@ -84,6 +90,16 @@ def tidy(axes):
         if high / low < 100:
             axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:.3g}"))
     axes.grid(alpha=0.3)
+
+
+def mark_sizes(axes, sizes):
+    """Ticks at the sizes themselves, if they stand far enough apart."""
+    ticks = sorted(sizes)
+    gaps = [high / low for low, high in zip(ticks, ticks[1:])]
+    if gaps and min(gaps) > max((ticks[-1] / ticks[0]) ** (1 / 12), 1.05):
+        axes.xaxis.set_major_locator(FixedLocator(ticks))
+        axes.xaxis.set_minor_locator(FixedLocator([]))
+        axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:.4g}"))
 
 
 def draw_slopes(axes, all_points):
@@ -151,6 +167,8 @@ def draw(study, lines, error, out):
         axes.set_xscale("log")
         axes.set_yscale("log")
         tidy(axes)
+    if has_sizes:
+        mark_sizes(over_size, {x for x, _ in size_points})
     figure.suptitle(study["title"] or study["study"])
     handles, labels = [], []
     for axes in panels:

@@ -14,6 +14,8 @@ namespace impm
            "  --check             parse, validate, print the scene, its point "
            "fields\n"
            "                      and bytes per point; run nothing\n"
+           "  --study             run the file's Study section; with --check, "
+           "list its runs\n"
            "  --print-parameters  every entry with default, range, unit and "
            "meaning\n"
            "  --quiet | --verbose\n"
@@ -50,7 +52,9 @@ namespace impm
           line.verbosity = CommandLine::Verbosity::quiet;
         else if (word == "--verbose")
           line.verbosity = CommandLine::Verbosity::verbose;
-        else if (word == "--restart" || word == "--study")
+        else if (word == "--study")
+          line.study = true;
+        else if (word == "--restart")
           throw InputError("", word + " is not there yet in this version");
         else if (word.rfind("-", 0) == 0)
           throw InputError("", "unknown option '" + word + "'; see --help");

@@ -1,6 +1,7 @@
 #include <impm/exceptions.h>
 #include <impm/finer_run.h>
 #include <impm/simulation.h>
+#include <impm/study.h>
 #include <impm/version.h>
 
 #include <nlohmann/json.hpp>
@@ -60,7 +61,7 @@ namespace impm
             overrides.insert(overrides.end(),
                              spec.overrides.begin(),
                              spec.overrides.end());
-            ParameterFile file(line.parameter_file, overrides, declare_scene);
+            ParameterFile file(line.parameter_file, overrides, declare_file);
             if (scene_dimension(file.handler()) != dim)
               throw InputError("", "found another dimension, allowed is one");
             Task task{spec.name,

@@ -4,11 +4,15 @@
 #include <impm/finer_run.h>
 #include <impm/parameter_listing.h>
 #include <impm/simulation.h>
+#include <impm/study_process.h>
+#include <impm/study_runner.h>
 #include <impm/version.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <new>
+#include <optional>
 #include <sstream>
 
 namespace
@@ -38,14 +42,12 @@ namespace
     if (line.action == CommandLine::Action::check)
       return;
     const auto finer_runs = finer.run();
-    simulation.run(directory, name, file.resolved(), finer_runs);
+    simulation.run(directory, name, file.resolved({"Study"}), finer_runs);
   }
 
   void
-  dispatch(const CommandLine &line)
+  dispatch(const CommandLine &line, const bool first)
   {
-    const bool first =
-      dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
     switch (line.action)
       {
         case CommandLine::Action::print_help:
@@ -64,10 +66,16 @@ namespace
         default:
           break;
       }
-    ParameterFile file(line.parameter_file, line.overrides, declare_scene);
+    if (line.study && is_started_by_mpi())
+      throw InputError("",
+                       "--study under mpirun: it starts its own processes; "
+                       "allowed is an entry 'ranks' in a list of the study");
+    ParameterFile file(line.parameter_file, line.overrides, declare_file);
     try
       {
-        if (scene_dimension(file.handler()) == 3)
+        if (line.study)
+          run_study(line, file);
+        else if (scene_dimension(file.handler()) == 3)
           run<3>(line, file);
         else
           run<2>(line, file);
@@ -87,9 +95,14 @@ namespace
 int
 main(int argc, char **argv)
 {
-  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-  const bool                               first =
-    dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
+  // What a study starts can start MPI only if the study itself has not.
+  const bool is_study =
+    std::count(argv, argv + argc, std::string("--study")) > 0;
+  std::optional<dealii::Utilities::MPI::MPI_InitFinalize> mpi;
+  if (!is_study || is_started_by_mpi())
+    mpi.emplace(argc, argv, 1);
+  const bool first =
+    !mpi || dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
   const auto say = [&](const std::string &what, const std::string &why) {
     if (first)
       std::cerr << "impm_dealii: " << what << why << std::endl;
@@ -97,13 +110,13 @@ main(int argc, char **argv)
   // A failure of one rank alone would leave the others waiting.
   const auto fail_alone = [&](const std::string &why) {
     std::cerr << "impm_dealii: system failure: " << why << std::endl;
-    if (dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
+    if (mpi && dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
       MPI_Abort(MPI_COMM_WORLD, 3);
     return 3;
   };
   try
     {
-      dispatch(parse_command_line(argc, argv));
+      dispatch(parse_command_line(argc, argv), first);
     }
   catch (const InputError &error)
     {

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 
@@ -41,6 +42,41 @@ namespace impm
       return text;
     }
 
+    std::vector<std::string>
+    path_of(const std::string &override)
+    {
+      return split_path(override.substr(0, override.find('=')));
+    }
+
+    std::string
+    read_text(const std::string &file_name)
+    {
+      std::ifstream file(file_name);
+      if (!file)
+        throw InputError("",
+                         "cannot read the parameter file '" + file_name + "'");
+      std::ostringstream content;
+      content << file.rdbuf();
+      return content.str();
+    }
+
+    void
+    parse(dealii::ParameterHandler &prm,
+          const std::string        &text,
+          const std::string        &name,
+          const bool                strict)
+    {
+      std::istringstream in(text);
+      try
+        {
+          prm.parse_input(in, name, "", !strict);
+        }
+      catch (dealii::ExceptionBase &exception)
+        {
+          throw InputError("", describe_error(exception, text, prm));
+        }
+    }
+
     /** The value of an entry, if it has been declared. */
     std::string
     look_up(dealii::ParameterHandler &prm,
@@ -71,13 +107,8 @@ namespace impm
     : file_name(file_name)
     , overrides(overrides)
   {
-    std::ifstream file(file_name);
-    if (!file)
-      throw InputError("",
-                       "cannot read the parameter file '" + file_name + "'");
-    std::ostringstream content;
-    content << file.rdbuf();
-    text = content.str();
+    sources.push_back({file_name, read_text(file_name)});
+    read_scene_of_study();
 
     // Lists of names, then what each name chooses, then what that choice
     // declares (a union may name other shapes): three readings find them.
@@ -91,27 +122,54 @@ namespace impm
                 [&](const std::string &path, const std::string &fallback) {
                   return look_up(*before, path, fallback);
                 });
-        read(reading == n_readings);
+        read(*prm, reading == n_readings);
       }
   }
 
   void
-  ParameterFile::read(const bool strict)
+  ParameterFile::read_scene_of_study()
   {
-    const auto parse = [&](const std::string &input, const std::string &name) {
-      std::istringstream in(input);
-      try
-        {
-          prm->parse_input(in, name, "", !strict);
-        }
-      catch (dealii::ExceptionBase &exception)
-        {
-          throw InputError("", describe_error(exception, input, *prm));
-        }
+    dealii::ParameterHandler handler;
+    handler.enter_subsection("Study");
+    handler.declare_entry("Scene", "");
+    handler.leave_subsection();
+    parse(handler, sources.back().text, file_name, false);
+    const std::string scene = look_up(handler, "Study/Scene", "");
+    if (scene.empty())
+      return;
+    const auto name =
+      (std::filesystem::path(file_name).parent_path() / scene).string();
+    const auto fail = [&](const std::string &message) {
+      throw InputError("", locate("Study/Scene") + ": " + message);
     };
-    parse(text, file_name);
+    if (!std::ifstream(name))
+      fail(
+        "entry 'Study/Scene': found '" + scene +
+        "', allowed is the path of a parameter file from here; cannot read '" +
+        name + "'");
+    const std::string text = read_text(name);
+    for_each_entry(
+      text,
+      [&](const std::vector<std::string> &path, const unsigned int line, bool) {
+        if (path[0] == "Study")
+          fail("entry 'Study/Scene': found '" + scene +
+               "', which has in line " + std::to_string(line) +
+               " a section Study of its own, allowed is a scene without");
+      });
+    sources.insert(sources.begin(), {name, text});
+  }
+
+  void
+  ParameterFile::read(dealii::ParameterHandler &prm, const bool strict) const
+  {
+    for (const auto &source : sources)
+      parse(prm, source.text, source.name, strict);
     for (const auto &override : overrides)
-      parse(override_as_text(override), "--set " + override);
+      {
+        if (path_of(override) == split_path("Study/Scene"))
+          throw InputError("", "--set " + override + ": only a file sets it");
+        parse(prm, override_as_text(override), "--set " + override, strict);
+      }
   }
 
   std::string
@@ -139,20 +197,22 @@ namespace impm
   std::string
   ParameterFile::locate(const std::string &path) const
   {
+    const auto wanted = split_path(path);
     for (auto override = overrides.rbegin(); override != overrides.rend();
          ++override)
-      if (split_path(override->substr(0, override->find('='))) ==
-          split_path(path))
+      if (path_of(*override) == wanted)
         return "--set " + *override;
 
-    const auto  wanted = split_path(path);
     std::string place;
-    for_each_entry(
-      text,
-      [&](const std::vector<std::string> &here, const unsigned int line, bool) {
-        if (here == wanted)
-          place = "file " + file_name + ", line " + std::to_string(line);
-      });
+    for (const auto &source : sources)
+      for_each_entry(source.text,
+                     [&](const std::vector<std::string> &here,
+                         const unsigned int              line,
+                         bool) {
+                       if (here == wanted)
+                         place = "file " + source.name + ", line " +
+                                 std::to_string(line);
+                     });
     return place.empty() ? "file " + file_name + " (entry not set there)" :
                            place;
   }

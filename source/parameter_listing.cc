@@ -2,6 +2,7 @@
 #include <impm/parameter_listing.h>
 #include <impm/parameter_messages.h>
 #include <impm/scene.h>
+#include <impm/study.h>
 
 #include <nlohmann/json.hpp>
 
@@ -40,7 +41,8 @@ namespace impm
         {"Solver/Linear solver", "GMRES"},
         {"Output/Probes", "point,largest,extent,motion"},
         {"Output/Reactions", "reaction"},
-        {"Reference/Names", "field,probe,curve,finer run"}};
+        {"Reference/Names", "field,probe,curve,finer run"},
+        {"Study/Lists", "list"}};
       const auto choice = choices.find(path);
       if (choice != choices.end())
         return choice->second;
@@ -84,7 +86,7 @@ namespace impm
   print_parameter_listing(std::ostream &out)
   {
     dealii::ParameterHandler prm;
-    declare_scene(prm, choose_everything);
+    declare_file(prm, choose_everything);
     std::stringstream listing;
     prm.print_parameters(listing,
                          dealii::ParameterHandler::JSON |

@@ -25,6 +25,7 @@ namespace impm
     };
 
     Action                   action    = Action::run;
+    bool                     study     = false; ///< of the Study section
     Verbosity                verbosity = Verbosity::normal;
     std::string              parameter_file;
     std::string              output_directory; ///< empty: the file's own

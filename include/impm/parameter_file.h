@@ -33,9 +33,10 @@ namespace impm
       std::function<void(dealii::ParameterHandler &prm, const Chosen &chosen)>;
 
     /**
-     * Reads `file_name`, then the overrides ("Section/Sub/Name=value").
-     * Throws InputError, whose message has file, line, entry, what was found
-     * and what is allowed.
+     * Reads the scene that the entry Study/Scene of `file_name` names (a path
+     * from there), if it does, then `file_name`, then the overrides
+     * ("Section/Sub/Name=value"). Throws InputError, whose message has file,
+     * line, entry, what was found and what is allowed.
      */
     ParameterFile(const std::string              &file_name,
                   const std::vector<std::string> &overrides,
@@ -58,11 +59,19 @@ namespace impm
     const std::string file_name;
 
   private:
+    struct Source
+    {
+      std::string name, text;
+    };
+
     void
-    read(bool strict);
+    read_scene_of_study();
+
+    void
+    read(dealii::ParameterHandler &prm, bool strict) const;
 
     std::vector<std::string>                  overrides;
-    std::string                               text;
+    std::vector<Source>                       sources; ///< the last one wins
     std::unique_ptr<dealii::ParameterHandler> prm;
   };
 

@@ -13,23 +13,32 @@ namespace impm
   Totals<dim>
   total(const MaterialPoints<dim> &points)
   {
-    std::vector<double> sums(4 + dim);
-    for (unsigned int p = 0; p < points.size(); ++p)
+    std::vector<double> sums(7 + dim);
+    unsigned int        p = 0;
+    for (const auto &particle : points.sorted.particles)
       {
         const double mass = points.mass(p);
         sums[0] += mass;
         if (points.offset_velocity > 0)
-          for (unsigned int d = 0; d < dim; ++d)
-            {
-              const double v = points.fields(p)[points.offset_velocity + d];
-              sums[1] += 0.5 * mass * v * v;
-              sums[4 + d] += mass * v;
-            }
+          {
+            Tensor<1, 3> x, v;
+            for (unsigned int d = 0; d < dim; ++d)
+              {
+                x[d] = particle.get_location()[d];
+                v[d] = points.fields(p)[points.offset_velocity + d];
+                sums[7 + d] += mass * v[d];
+              }
+            sums[1] += 0.5 * mass * v.norm_square();
+            const auto spin = cross_product_3d(x, v);
+            for (unsigned int d = 0; d < 3; ++d)
+              sums[4 + d] += mass * spin[d];
+          }
         const auto energy =
           points.material(p).energy(deformation_gradient(points, p),
                                     points.fields(p) + points.offset_history);
         sums[2] += points.initial_volume(p) * energy.stored;
         sums[3] += points.initial_volume(p) * energy.dissipated;
+        ++p;
       }
     Utilities::MPI::sum(sums, points.communicator, sums);
     Totals<dim> totals;
@@ -38,7 +47,9 @@ namespace impm
     totals.strain_energy  = sums[2];
     totals.plastic_work   = sums[3];
     for (unsigned int d = 0; d < dim; ++d)
-      totals.momentum[d] = sums[4 + d];
+      totals.momentum[d] = sums[7 + d];
+    for (unsigned int d = 0; d < 3; ++d)
+      totals.angular_momentum[d] = sums[4 + d];
     return totals;
   }
 
@@ -75,7 +86,11 @@ namespace impm
                   "solver_fallbacks",
                   "noise_stops",
                   "held_cells",
-                  "limited_boxes"});
+                  "limited_boxes",
+                  "total_energy"});
+    if (scene.geometry != GeometryKind::axisymmetric)
+      for (unsigned int d = dim == 2 ? 2 : 0; d < 3; ++d)
+        names.push_back(std::string("angular_momentum_") + "xyz"[d]);
     return names;
   }
 
@@ -287,6 +302,10 @@ namespace impm
     add(report.noise_stops);
     add(report.held_cells);
     add(report.limited_boxes);
+    add(totals.kinetic_energy + totals.strain_energy);
+    if (scene.geometry != GeometryKind::axisymmetric)
+      for (unsigned int d = dim == 2 ? 2 : 0; d < 3; ++d)
+        add(totals.angular_momentum[d]);
 
     file << std::setprecision(12);
     for (unsigned int i = 0; i < row.size(); ++i)

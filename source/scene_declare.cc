@@ -505,26 +505,24 @@ namespace impm
                         "true",
                         Patterns::Bool(),
                         "Whether VTU files of points and grid are written.");
-      if (chosen("Output/Pictures", "true") == "true")
-        {
-          prm.declare_entry("Time between pictures",
-                            "0",
-                            Patterns::Double(0),
-                            "(s); 0: by the number of steps.");
-          if (dealii::Patterns::Double(0, 0).match(
-                chosen("Output/Time between pictures", "0")))
-            prm.declare_entry("Steps between pictures",
-                              "10",
-                              Patterns::Integer(1),
-                              "Number of steps.");
-          prm.declare_entry("Point fields",
-                            "velocity, cauchy_stress, von_mises_stress, "
-                            "equivalent_plastic_strain, deformation_gradient, "
-                            "volume, body",
-                            Patterns::Anything(),
-                            "Fields of the points; those that this scene does "
-                            "not have are left out.");
-        }
+      // Also where pictures are off, so that a study can switch them off.
+      prm.declare_entry("Time between pictures",
+                        "0",
+                        Patterns::Double(0),
+                        "(s); 0: by the number of steps.");
+      if (dealii::Patterns::Double(0, 0).match(
+            chosen("Output/Time between pictures", "0")))
+        prm.declare_entry("Steps between pictures",
+                          "10",
+                          Patterns::Integer(1),
+                          "Number of steps.");
+      prm.declare_entry("Point fields",
+                        "velocity, cauchy_stress, von_mises_stress, "
+                        "equivalent_plastic_strain, deformation_gradient, "
+                        "volume, body",
+                        Patterns::Anything(),
+                        "Fields of the points; those that this scene does "
+                        "not have are left out.");
       prm.declare_entry("Probes",
                         "",
                         Patterns::Anything(),

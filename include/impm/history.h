@@ -32,6 +32,7 @@ namespace impm
   {
     double                 mass = 0;
     dealii::Tensor<1, dim> momentum;
+    dealii::Tensor<1, 3>   angular_momentum; ///< about the origin
     double kinetic_energy = 0, strain_energy = 0, plastic_work = 0;
   };
 

@@ -37,9 +37,11 @@ namespace impm
     // A prescribed motion alone would crush the cells next to it. From the
     // guess without it, one linear solve takes it into the body.
     balance.constraints.interpolate_hanging(u);
-    if (!evaluate(u).admissible)
+    const auto guess = evaluate(u);
+    if (!guess.admissible)
       return false;
-    trial = u;
+    first_residual = guess.residual;
+    trial          = u;
     balance.constraints.set_prescribed(trial);
     trial -= u;
     if (trial.linfty_norm() == 0)
@@ -54,6 +56,7 @@ namespace impm
     balance.vmult_lift(right_side, lift);
     right_side += balance.residual();
     right_side *= -1.;
+    first_residual = right_side.l2_norm() / balance.unit_of_residual();
     result.linear_iterations +=
       linear_solver.solve(step, right_side, spec.linear_tolerance);
     ++result.iterations;
@@ -61,6 +64,16 @@ namespace impm
     u += step;
     balance.constraints.set_prescribed(u);
     return true;
+  }
+
+  template <int dim>
+  bool
+  NewtonSolver<dim>::is_small(const Evaluation &evaluation) const
+  {
+    // A slender body resists with little force: what is small against the
+    // forces of its material may still be all that happens in the step.
+    return evaluation.residual <= spec.newton_tolerance &&
+           evaluation.residual <= spec.newton_reduction * first_residual;
   }
 
   template <int dim>
@@ -88,8 +101,7 @@ namespace impm
     for (;;)
       {
         result.residuals.push_back(now.residual);
-        if (now.residual <= spec.newton_tolerance ||
-            now.residual <= now.round_off)
+        if (is_small(now) || now.residual <= now.round_off)
           {
             result.converged        = true;
             result.stopped_at_noise = now.residual > spec.newton_tolerance;

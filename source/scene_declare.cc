@@ -380,6 +380,11 @@ namespace impm
                         "Norm of the residual over that of the forces at a "
                         "strain of one, hence of the order of an error in "
                         "strain.");
+      prm.declare_entry("Newton reduction",
+                        "1e-3",
+                        Patterns::Double(tiny, 1),
+                        "And over that at the start of the step: where little "
+                        "happens in a step, it must be solved, too.");
       prm.declare_entry("Newton iterations",
                         "50",
                         Patterns::Integer(1),

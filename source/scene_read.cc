@@ -238,6 +238,7 @@ namespace impm
     {
       SolverSpec solver;
       solver.newton_tolerance  = prm.get_double("Newton tolerance");
+      solver.newton_reduction  = prm.get_double("Newton reduction");
       solver.newton_iterations = prm.get_integer("Newton iterations");
       solver.line_search       = prm.get_bool("Line search");
       solver.linear_solver     = prm.get("Linear solver");

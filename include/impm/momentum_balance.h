@@ -93,6 +93,13 @@ namespace impm
       return free_residual;
     }
 
+    /** Norm of the forces at a strain of one (N), the unit of residuals. */
+    double
+    unit_of_residual() const
+    {
+      return force_scale;
+    }
+
     /** What faces and rigid bodies exert (N): the residual before they do. */
     const Vector &
     constraint_forces() const

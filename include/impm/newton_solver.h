@@ -53,12 +53,16 @@ namespace impm
     bool
     start(Vector &u, Result &result);
 
+    bool
+    is_small(const Evaluation &evaluation) const;
+
     const SolverSpec     &spec;
     MomentumBalance<dim> &balance;
     LinearSolver<dim>    &linear_solver;
     const bool            has_potential;
     dealii::TimerOutput  &timer;
     Vector                step, trial, right_side;
+    double                first_residual = 0; ///< what the step has to solve
   };
 } // namespace impm
 

@@ -129,6 +129,7 @@ namespace impm
   struct SolverSpec
   {
     double       newton_tolerance;
+    double       newton_reduction;
     unsigned int newton_iterations;
     bool         line_search;
     std::string  linear_solver; ///< CG, GMRES, direct

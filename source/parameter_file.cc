@@ -92,7 +92,9 @@ namespace impm
           return fallback;
       try
         {
-          return prm.get(sections, name);
+          // what is not declared reads as "" where deal.II does not check
+          const std::string value = prm.get(sections, name);
+          return value.empty() ? fallback : value;
         }
       catch (const dealii::ParameterHandler::ExcEntryUndeclared &)
         {
@@ -111,8 +113,9 @@ namespace impm
     read_scene_of_study();
 
     // Lists of names, then what each name chooses, then what that choice
-    // declares (a union may name other shapes): three readings find them.
-    const unsigned int n_readings = 3;
+    // declares (a union may name other shapes), then what a choice among that
+    // declares (the constants of a law): four readings find them.
+    const unsigned int n_readings = 4;
     prm = std::make_unique<dealii::ParameterHandler>();
     for (unsigned int reading = 1; reading <= n_readings; ++reading)
       {

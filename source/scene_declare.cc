@@ -155,16 +155,24 @@ namespace impm
       for (const auto &name : split_names(chosen("Materials/Names", "")))
         {
           prm.enter_subsection(name);
-          const auto &laws = material_list();
+          const std::string path = "Materials/" + name + "/";
+          const auto       &laws = material_list();
           prm.declare_entry("Law",
                             laws.front().name,
                             Patterns::Selection(names_of(laws)),
                             "The constitutive law.");
-          const auto law =
-            chosen("Materials/" + name + "/Law", laws.front().name);
+          const auto law = chosen(path + "Law", laws.front().name);
           for (const auto &entry : laws)
             if (entry.name == law)
-              entry.declare(prm);
+              {
+                entry.declare(prm);
+                if (entry.declare_chosen)
+                  entry.declare_chosen(prm,
+                                       [&](const std::string &choice,
+                                           const std::string &fallback) {
+                                         return chosen(path + choice, fallback);
+                                       });
+              }
           prm.declare_entry("F-bar",
                             "false",
                             Patterns::Bool(),

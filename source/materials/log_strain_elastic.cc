@@ -9,42 +9,10 @@
 
 namespace impm
 {
-  HenckyElasticity::HenckyElasticity(const double young, const double poisson)
-    : young(young)
-    , bulk(young / (3. * (1. - 2. * poisson)))
-    , shear(young / (2. * (1. + poisson)))
-  {}
-
-
-  void
-  HenckyElasticity::declare_parameters(dealii::ParameterHandler &prm)
-  {
-    prm.declare_entry("Young's modulus",
-                      "1e9",
-                      dealii::Patterns::Double(1e-300),
-                      "Young's modulus of small strains (Pa), positive.");
-
-    // The ends are excluded by a margin that error messages can show.
-    prm.declare_entry("Poisson's ratio",
-                      "0.3",
-                      dealii::Patterns::Double(-0.9999, 0.499999),
-                      "Poisson's ratio of small strains, between -1 and 0.5, "
-                      "both excluded.");
-  }
-
-
   HenckyElasticity
   HenckyElasticity::from_parameters(dealii::ParameterHandler &prm)
   {
-    return HenckyElasticity(prm.get_double("Young's modulus"),
-                            prm.get_double("Poisson's ratio"));
-  }
-
-
-  double
-  HenckyElasticity::wave_speed(const double density) const
-  {
-    return std::sqrt((bulk + 4. / 3. * shear) / density);
+    return HenckyElasticity(ElasticConstants::from_parameters(prm));
   }
 
 

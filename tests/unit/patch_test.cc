@@ -13,6 +13,9 @@ namespace
 {
   using impm::Vector;
 
+  const Overrides neo_hookean = {"Materials/rubber/Law=neo-Hookean"};
+  const Overrides decoupled   = {"Materials/rubber/Law=decoupled neo-Hookean"};
+
   /** dF - I of a uniform strain, in three dimensions. */
   template <int dim>
   Tensor<2, 3>
@@ -296,6 +299,16 @@ TEST(PatchMpi, UniformStrainOnRegularPoints)
   patch_test("plane strain", refined, gradient, false);
   patch_test("plane strain", plastic, gradient, false);
   patch_test("plane strain", plastic + refined, gradient, false);
+  patch_test("plane strain", neo_hookean, gradient, false);
+  patch_test("plane strain", decoupled + refined, gradient, false);
+  patch_test("3D",
+             neo_hookean + Overrides{"Grid/Cells=2, 2, 2"},
+             some_gradient<3>(),
+             false);
+  patch_test("3D",
+             decoupled + Overrides{"Grid/Cells=2, 2, 2"},
+             some_gradient<3>(),
+             false);
   patch_test("3D", {"Grid/Cells=2, 2, 2"}, some_gradient<3>(), false);
   patch_test("3D",
              refined + Overrides{"Grid/Cells=2, 2, 2"},
@@ -307,6 +320,8 @@ TEST(PatchMpi, UniformStrainOnRegularPoints)
   radial[1][1] = -0.08;
   patch_test("axisymmetric", refined, radial, false);
   patch_test("axisymmetric", plastic, radial, false);
+  patch_test("axisymmetric", neo_hookean, radial, false);
+  patch_test("axisymmetric", decoupled, radial, false);
 }
 
 

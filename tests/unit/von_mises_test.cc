@@ -11,6 +11,8 @@
 #include <random>
 #include <vector>
 
+#include "material_fixture.h"
+
 namespace
 {
   using namespace dealii;
@@ -22,37 +24,7 @@ namespace
 
   const HenckyElasticity elasticity(young, poisson);
 
-  Tensor<2, 3>
-  diagonal(const double x, const double y, const double z)
-  {
-    Tensor<2, 3> t;
-    t[0][0] = x;
-    t[1][1] = y;
-    t[2][2] = z;
-    return t;
-  }
-
-  Tensor<2, 3>
-  rotation_z(const double angle)
-  {
-    Tensor<2, 3> q = diagonal(std::cos(angle), std::cos(angle), 1.);
-    q[1][0]        = std::sin(angle);
-    q[0][1]        = -std::sin(angle);
-    return q;
-  }
-
-  Tensor<2, 3>
-  rotation_x(const double angle)
-  {
-    Tensor<2, 3> q = diagonal(1., std::cos(angle), std::cos(angle));
-    q[2][1]        = std::sin(angle);
-    q[1][2]        = -std::sin(angle);
-    return q;
-  }
-
-  const Tensor<2, 3> in_plane = rotation_z(0.7);
-  const Tensor<2, 3> in_space = rotation_z(0.7) * rotation_x(-1.1);
-  const Tensor<2, 3> unit     = unit_symmetric_tensor<3>();
+  const Tensor<2, 3> unit = unit_symmetric_tensor<3>();
 
   // The law with the history of one point.
   struct PointState
@@ -120,69 +92,17 @@ namespace
     return std::sqrt(1.5) * deviator(tau).norm();
   }
 
-  SymmetricTensor<2, 3>
-  turned(const SymmetricTensor<2, 3> &t, const Tensor<2, 3> &q)
-  {
-    return symmetrize(q * Tensor<2, 3>(t) * transpose(q));
-  }
-
-  // Central difference of sixth order at 0.
-  template <typename Function>
-  auto
-  derivative(const Function &f, const double h)
-  {
-    return (45. * (f(h) - f(-h)) - 9. * (f(2 * h) - f(-2 * h)) +
-            (f(3 * h) - f(-3 * h))) /
-           (60. * h);
-  }
-
-  // Largest deviation of the tangent from differences of the stress and of
-  // the stress from differences of the potential.
+  // Of the tangent and of the stress, from differences.
   double
   derivative_error(PointState         &point,
                    const Tensor<2, 3> &increment,
                    const double        h)
   {
-    const auto response = point.respond(increment);
-    const auto c        = response.tangent;
-    const auto tau      = response.kirchhoff_stress;
-    const auto delta    = unit_symmetric_tensor<3>();
-    double     error    = 0;
-    for (unsigned int k = 0; k < 3; ++k)
-      for (unsigned int l = 0; l < 3; ++l)
-        {
-          const auto disturbed = [&](const double x) {
-            Tensor<2, 3> gradient = unit;
-            gradient[k][l] += x;
-            return point.respond(gradient * increment);
-          };
-          const SymmetricTensor<2, 3> difference = derivative(
-            [&](const double x) { return disturbed(x).kirchhoff_stress; }, h);
-          for (unsigned int i = 0; i < 3; ++i)
-            for (unsigned int j = 0; j < 3; ++j)
-              error = std::max(error,
-                               std::abs(difference[i][j] - c[i][j][k][l] -
-                                        delta[i][k] * tau[j][l] -
-                                        tau[i][l] * delta[j][k]));
-
-          const double slope =
-            derivative([&](const double x) { return disturbed(x).potential; },
-                       h);
-          error = std::max(error, std::abs(slope - tau[k][l]));
-        }
-    return error;
-  }
-
-  Tensor<2, 3>
-  random_gradient(std::mt19937 &generator, const bool planar, const double size)
-  {
-    std::uniform_real_distribution<double> uniform(-size, size);
-    Tensor<2, 3>                           F = unit;
-    for (unsigned int i = 0; i < 3; ++i)
-      for (unsigned int j = 0; j < 3; ++j)
-        if (!planar || i == j || i + j == 1)
-          F[i][j] += uniform(generator);
-    return F;
+    const auto respond = [&](const Tensor<2, 3> &dF) {
+      return point.respond(dF);
+    };
+    return std::max(tangent_error(respond, increment, h),
+                    potential_error(respond, increment, h));
   }
 } // namespace
 

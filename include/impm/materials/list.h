@@ -4,6 +4,7 @@
 #include <deal.II/base/parameter_handler.h>
 
 #include <impm/materials/material.h>
+#include <impm/parameter_file.h>
 
 #include <functional>
 #include <memory>
@@ -26,6 +27,14 @@ namespace impm
      * they contradict each other.
      */
     std::function<std::unique_ptr<Material>(dealii::ParameterHandler &)> create;
+
+    /**
+     * Declares the entries that depend on others of this law; `chosen` takes
+     * their bare names. Empty if there are none.
+     */
+    std::function<void(dealii::ParameterHandler &,
+                       const ParameterFile::Chosen &)>
+      declare_chosen = {};
   };
 
   /** Every law of the program; a new one is added here. */

@@ -3,6 +3,7 @@
 
 #include <deal.II/base/parameter_handler.h>
 
+#include <impm/materials/elastic_constants.h>
 #include <impm/materials/log_strain.h>
 #include <impm/materials/material.h>
 
@@ -17,15 +18,10 @@ namespace impm
    *   psi = K / 2 (tr eps)^2 + G |dev eps|^2   per initial volume,
    *   tau = K tr eps 1 + 2 G dev eps.
    */
-  class HenckyElasticity
+  class HenckyElasticity : public ElasticConstants
   {
   public:
-    /** Young's modulus (Pa, > 0) and Poisson's ratio (-1 < nu < 0.5). */
-    HenckyElasticity(double young, double poisson);
-
-    /** The two entries that the constants are read from. */
-    static void
-    declare_parameters(dealii::ParameterHandler &prm);
+    using ElasticConstants::ElasticConstants;
 
     static HenckyElasticity
     from_parameters(dealii::ParameterHandler &prm);
@@ -38,13 +34,10 @@ namespace impm
     LogStrain::PrincipalStress
     stress(const std::array<double, 3> &strain) const;
 
-    /** Of longitudinal waves (m/s), from the density (kg/m^3). */
-    double
-    wave_speed(double density) const;
-
-    const double young; ///< Pa
-    const double bulk;  ///< K (Pa)
-    const double shear; ///< G (Pa)
+  private:
+    explicit HenckyElasticity(const ElasticConstants &constants)
+      : ElasticConstants(constants)
+    {}
   };
 
 
@@ -103,12 +96,11 @@ namespace impm
   {
     LogStrain::PrincipalStress result;
     const double               volumetric = strain[0] + strain[1] + strain[2];
-    const double               lame       = bulk - 2. / 3. * shear;
     for (unsigned int a = 0; a < 3; ++a)
       {
         result.stress[a] =
           bulk * volumetric + 2. * shear * (strain[a] - volumetric / 3.);
-        result.moduli[a].fill(lame);
+        result.moduli[a].fill(lame());
         result.moduli[a][a] += 2. * shear;
       }
     result.secant.fill(2. * shear);

@@ -233,6 +233,16 @@ namespace impm
         if (follower.field)
           follower.field->evaluate(point, particle.get_location(), values);
         double value = values[component];
+        if (spec.kind == Kind::point && spec.field == "displacement" &&
+            component < dim)
+          {
+            // From the point to the place that was asked for.
+            const auto F     = deformation_gradient(points, point);
+            const auto start = points.initial_position(point);
+            for (unsigned int d = 0; d < dim; ++d)
+              value += (F[component][d] - (component == d ? 1 : 0)) *
+                       (spec.position[d] - start[d]);
+          }
         if (spec.kind == Kind::extent)
           {
             // Half the box that the point stands for, stretched by F.

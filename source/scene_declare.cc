@@ -471,7 +471,8 @@ namespace impm
         "Kind",
         "point",
         Patterns::Selection("point|largest|smallest|mean|extent|motion"),
-        "point: at the point nearest to a place at the start. Largest, "
+        "point: at the point nearest to a place at the start, from which a "
+        "displacement is carried on to the place by F. Largest, "
         "smallest, mean: over bodies. Extent: largest coordinate, the points' "
         "domains included. Motion: of a moving face or a rigid body.");
       const auto kind = chosen("Output/" + name + "/Kind", "point");

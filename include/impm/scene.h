@@ -89,7 +89,8 @@ namespace impm
   {
     enum class Kind
     {
-      point,   ///< a field at the point nearest to a place at the start
+      point,   ///< a field at the point nearest to a place at the start; a
+               ///< displacement is carried on to the place by F
       largest, ///< over all points of the bodies
       smallest,
       mean,   ///< weighted by initial volume

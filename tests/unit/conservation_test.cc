@@ -121,6 +121,27 @@ TEST(ConservationMpi, FreeFlightKeepsMomentum)
 }
 
 
+TEST(ConservationMpi, BoxesKeepMomentum)
+{
+  const Overrides boxes = {"Grid/Method=GIMP"};
+  check_gather<2>("plane strain", boxes + half_refined);
+  check_gather<3>("3D", boxes + space + half_refined);
+  fly<2>("plane strain", boxes + half_refined + plastic);
+  fly<3>("3D", boxes + space + half_refined);
+}
+
+
+TEST(ConservationMpi, EveryTransferKeepsMomentum)
+{
+  for (const std::string transfer : {"FLIP", "PIC", "APIC"})
+    for (const std::string from : {"grid", "points"})
+      fly<2>("plane strain",
+             half_refined + Overrides{"Time/Integrator=Newmark",
+                                      "Time/Acceleration from=" + from,
+                                      "Time/Transfer=" + transfer});
+}
+
+
 // A block of one velocity just flies: no force, whatever grid it crosses.
 TEST(ConservationMpi, UniformVelocityStaysUniform)
 {

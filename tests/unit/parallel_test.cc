@@ -156,6 +156,48 @@ TEST(ParallelMpi, LocallyRefinedGrid)
 }
 
 
+TEST(ParallelMpi, Boxes)
+{
+  compare<2>(upsetting(),
+             platen_is_a_face + split + Overrides{"Grid/Method=GIMP"});
+}
+
+
+TEST(ParallelMpi, MeanVolume)
+{
+  compare<2>(upsetting(),
+             platen_is_a_face + split +
+               Overrides{"Materials/steel/F-bar=true"});
+  compare<2>(upsetting(),
+             platen_is_a_face +
+               Overrides{"Grid/Method=GIMP", "Materials/steel/F-bar=true"});
+}
+
+
+TEST(ParallelMpi, NewmarkAndTransfers)
+{
+  for (const std::string from : {"grid", "points"})
+    compare<2>(upsetting(),
+               platen_is_a_face + split +
+                 Overrides{"Time/Integrator=Newmark",
+                           "Time/Acceleration from=" + from,
+                           "Time/Transfer=APIC"});
+}
+
+
+TEST(ParallelMpi, FiniteElements)
+{
+  const Overrides platen = {"Grid/Method=Lagrangian",
+                            "Boundary conditions/top/Type=velocity",
+                            "Boundary conditions/top/Value=0; -0.05",
+                            "Output/load/On=top"};
+  compare<2>(upsetting(), platen + split);
+  compare<2>(upsetting(),
+             platen + Overrides{"Time/Integrator=Newmark",
+                                "Materials/steel/F-bar=true"});
+}
+
+
 TEST(ParallelMpi, PlatenOfPoints)
 {
   compare<2>(upsetting(), platen_is_a_body);

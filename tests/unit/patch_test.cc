@@ -353,12 +353,18 @@ TEST(PatchMpi, LinearFieldsHaveTheirGradient)
     EXPECT_GT(Utilities::MPI::sum(ghost.faces.size(), MPI_COMM_WORLD), 0u);
     EXPECT_NEAR(ghost.energy(u), 0., 1e-16);
   };
-  Model<2> plane(block_scene("plane strain"),
-                 refined + Overrides{"Geometry/box/Upper corner=0.7, 0.6"});
-  check(plane, some_gradient<2>());
-  Model<3> space(block_scene("3D"),
-                 refined + Overrides{"Geometry/box/Upper corner=0.7, 0.6, 1"});
-  check(space, some_gradient<3>());
+  for (const std::string method : {"MPM", "GIMP"})
+    {
+      const Overrides chosen = {"Grid/Method=" + method};
+      Model<2>        plane(block_scene("plane strain"),
+                     chosen + refined +
+                       Overrides{"Geometry/box/Upper corner=0.7, 0.6"});
+      check(plane, some_gradient<2>());
+      Model<3> space(block_scene("3D"),
+                     chosen + refined +
+                       Overrides{"Geometry/box/Upper corner=0.7, 0.6, 1"});
+      check(space, some_gradient<3>());
+    }
 }
 
 
@@ -368,6 +374,10 @@ TEST(RigidRotationMpi, OfAnUnstressedBody)
   rotate<2>("plane strain", refined, false);
   rotate<2>("plane strain", plastic + refined, false);
   rotate<3>("3D", refined, false);
+  rotate<2>("plane strain", refined + Overrides{"Grid/Method=GIMP"}, false);
+  rotate<2>("plane strain",
+            refined + Overrides{"Materials/rubber/F-bar=true"},
+            false);
 }
 
 

@@ -187,6 +187,16 @@ namespace impm
                 std::copy(velocity.begin(),
                           velocity.end(),
                           values + offset_velocity);
+                // Without it the grid would get less spin than the points have.
+                if (body.velocity && offset_affine > 0)
+                  for (unsigned int c = 0; c < dim; ++c)
+                    {
+                      const auto gradient =
+                        body.velocity->gradient(seed.position, c);
+                      std::copy_n(gradient.begin_raw(),
+                                  dim,
+                                  values + offset_affine + dim * c);
+                    }
               }
             for (unsigned int d = 0; d < dim; ++d)
               {

@@ -95,6 +95,7 @@ namespace impm
       add_affine_momentum(points, footprints, grid, velocity);
     finish(velocity);
     divide_by_mass(velocity);
+    constraints.stop_held(velocity);
     if (points.offset_acceleration > 0)
       {
         gather(
@@ -105,6 +106,7 @@ namespace impm
           acceleration);
         finish(acceleration);
         divide_by_mass(acceleration);
+        constraints.stop_held(acceleration);
       }
   }
 

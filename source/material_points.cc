@@ -224,6 +224,30 @@ namespace impm
 
   template class SortedParticles<2>;
   template class SortedParticles<3>;
+  template <int dim>
+  double
+  largest_speed(const MaterialPoints<dim> &points)
+  {
+    double wave = 0, square = 0;
+    for (unsigned int p = 0; p < points.size(); ++p)
+      {
+        wave = std::max(wave, points.material(p).wave_speed());
+        if (points.offset_velocity == 0)
+          continue;
+        double sum = 0;
+        for (unsigned int d = 0; d < dim; ++d)
+          sum += std::pow(points.fields(p)[points.offset_velocity + d], 2);
+        square = std::max(square, sum);
+      }
+    wave   = Utilities::MPI::max(wave, points.communicator);
+    square = Utilities::MPI::max(square, points.communicator);
+    return wave + std::sqrt(square);
+  }
+
+  template double
+  largest_speed(const MaterialPoints<2> &);
+  template double
+  largest_speed(const MaterialPoints<3> &);
   template class MaterialPoints<2>;
   template class MaterialPoints<3>;
 } // namespace impm

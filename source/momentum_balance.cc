@@ -25,6 +25,10 @@ namespace impm
     , axisymmetric(scene.geometry == GeometryKind::axisymmetric)
     , n_gradients(response.kinematics.size)
     , builder(make_footprint_builder(scene))
+    , smoothing(scene.time.momentum_formulation ?
+                  std::make_unique<VelocitySmoothing<dim>>(
+                    points, prints, constraints, grid) :
+                  nullptr)
   {
     for (Vector *vector : {&mass,
                            &velocity,
@@ -32,8 +36,11 @@ namespace impm
                            &holding,
                            &known_acceleration,
                            &load,
+                           &start_load,
                            &start_forces,
+                           &start_increment,
                            &work,
+                           &smooth,
                            &forces,
                            &free_residual})
       grid.initialize(*vector);
@@ -58,7 +65,8 @@ namespace impm
                 grid,
                 scene.geometry,
                 scene.stabilization.ghost_penalty);
-    gather_load(time + dt, load);
+    if (!integrator.is_explicit())
+      gather_load(time + dt, load);
     hold_isolated_cells();
     if (integrator.has_inertia() && !nodes_have_motion)
       gather_motion(
@@ -68,6 +76,11 @@ namespace impm
         interpolate_initial_velocity(
           scene, points, prints, constraints, grid, mass, velocity);
         nodes_have_motion = true;
+      }
+    if (smoothing)
+      {
+        smoothing->begin_step(mass);
+        start_increment.equ(dt, velocity);
       }
     if (integrator.force_factor() < 1)
       gather_start_forces();
@@ -97,13 +110,33 @@ namespace impm
         }
     work.compress(VectorOperation::add);
     constraints.condense_hanging(work);
-    force_scale = work.l2_norm();
+    force_scale = scene.solver.residual_scale == ResidualScale::body ?
+                    work.l2_norm() :
+                    force_of_cell();
     work.update_ghost_values();
     constraints.build(time, dt, work);
     n_active_dofs = 0;
     for (unsigned int i = 0; i < work.locally_owned_size(); ++i)
       n_active_dofs += !constraints.is_constrained[i];
     n_active_dofs = Utilities::MPI::sum(n_active_dofs, grid.communicator);
+  }
+
+  template <int dim>
+  double
+  MomentumBalance<dim>::force_of_cell() const
+  {
+    double stiffness = 0, volume = std::numeric_limits<double>::max();
+    for (const auto &body : scene.bodies)
+      if (!body.rigid)
+        stiffness = std::max(stiffness, body.material->stiffness());
+    for (const auto &cell : prints.cells)
+      {
+        double product = 1;
+        for (unsigned int d = 0; d < dim; ++d)
+          product *= cell.cell->extent_in_direction(d);
+        volume = std::min(volume, product);
+      }
+    return stiffness * Utilities::MPI::min(volume, grid.communicator);
   }
 
   template <int dim>
@@ -117,8 +150,8 @@ namespace impm
     add_point_forces(response.stresses, start_forces);
     start_forces.compress(VectorOperation::add);
     constraints.condense_hanging(start_forces);
-    gather_load(time, work);
-    start_forces += work;
+    gather_load(time, start_load);
+    start_forces += start_load;
     if (integrator.keeps_acceleration())
       return;
     for (unsigned int i = 0; i < mass.locally_owned_size(); ++i)
@@ -286,12 +319,42 @@ namespace impm
   }
 
   template <int dim>
+  void
+  MomentumBalance<dim>::explicit_increment(Vector &u) const
+  {
+    u.equ(dt, velocity);
+    u.add(dt * dt, acceleration);
+    constraints.set_prescribed(u);
+  }
+
+  template <int dim>
+  double
+  MomentumBalance<dim>::add_inertia(const Vector &u, double &potential)
+  {
+    double squares = 0;
+    for (unsigned int i = 0; i < forces.locally_owned_size(); ++i)
+      if (mass.local_element(i) > 0)
+        {
+          const double m = mass.local_element(i), v = u.local_element(i);
+          const double a = integrator.mass_factor(dt) * v;
+          const double h = known_acceleration.local_element(i);
+          potential += m * (0.5 * a - h) * v;
+          forces.local_element(i) += m * (a - h);
+          squares += std::pow(m * a, 2) + std::pow(m * h, 2);
+        }
+    return std::sqrt(Utilities::MPI::sum(squares, grid.communicator));
+  }
+
+  template <int dim>
   typename MomentumBalance<dim>::Evaluation
   MomentumBalance<dim>::evaluate(const Vector &u, const bool with_tangent)
   {
     Evaluation result;
     u.update_ghost_values();
-    gradients_at_points(u, response.gradients);
+    if (smoothing)
+      smoothing->apply(u, start_increment, smooth);
+    const Vector &strain_u = smoothing ? smooth : u;
+    gradients_at_points(strain_u, response.gradients);
     double     potential = 0;
     const bool fine      = response.evaluate(with_tangent, potential);
     if (Utilities::MPI::min(static_cast<int>(fine), grid.communicator) == 0)
@@ -299,14 +362,17 @@ namespace impm
 
     const double factor = integrator.force_factor();
     forces              = 0;
-    add_point_forces(response.stresses, forces);
-    ghost.add_force(u, 1., forces);
-    forces.compress(VectorOperation::add);
-    constraints.condense_hanging(forces);
-    forces += load;
-    potential += ghost.energy(u);
-    for (unsigned int i = 0; i < forces.locally_owned_size(); ++i)
-      potential += load.local_element(i) * u.local_element(i);
+    if (factor > 0)
+      {
+        add_point_forces(response.stresses, forces);
+        ghost.add_force(strain_u, 1., forces);
+        forces.compress(VectorOperation::add);
+        constraints.condense_hanging(forces);
+        forces += load;
+        potential += ghost.energy(strain_u);
+        for (unsigned int i = 0; i < forces.locally_owned_size(); ++i)
+          potential += load.local_element(i) * u.local_element(i);
+      }
     const double force_norm = forces.l2_norm();
 
     if (factor < 1)
@@ -319,18 +385,8 @@ namespace impm
           forces.local_element(i) += force;
           potential += 0.5 * force * u.local_element(i);
         }
-    double inertia_norm = 0;
-    if (integrator.has_inertia())
-      for (unsigned int i = 0; i < forces.locally_owned_size(); ++i)
-        if (mass.local_element(i) > 0)
-          {
-            const double m = mass.local_element(i), v = u.local_element(i);
-            const double a = integrator.mass_factor(dt) * v;
-            const double h = known_acceleration.local_element(i);
-            potential += m * (0.5 * a - h) * v;
-            forces.local_element(i) += m * (a - h);
-            inertia_norm += std::pow(m * a, 2) + std::pow(m * h, 2);
-          }
+    const double inertia_norm =
+      integrator.has_inertia() ? add_inertia(u, potential) : 0.;
     if (factor < 1)
       for (unsigned int i = 0; i < forces.locally_owned_size(); ++i)
         potential +=
@@ -345,8 +401,6 @@ namespace impm
     // What cancels in the residual at most leaves this behind.
     const double squares =
       Utilities::MPI::sum(response.square_of_stresses(), grid.communicator);
-    inertia_norm =
-      std::sqrt(Utilities::MPI::sum(inertia_norm, grid.communicator));
     result.round_off =
       16 * std::numeric_limits<double>::epsilon() *
       (force_norm + inertia_norm + std::sqrt(squares) / smallest_extent) /

@@ -27,34 +27,46 @@ namespace impm
   NewtonSolver<dim>::evaluate(const Vector &u)
   {
     TimerOutput::Scope scope(timer, "points");
-    return balance.evaluate(u);
+    const auto         result = balance.evaluate(u, !spec.without_tangent());
+    linear_solver.linearize_at(u);
+    return result;
   }
 
   template <int dim>
-  bool
-  NewtonSolver<dim>::start(Vector &u, Result &result)
+  void
+  NewtonSolver<dim>::start(Vector &u, Result &result, Evaluation &now)
   {
+    balance.constraints.interpolate_hanging(u);
+    trial = u;
+    balance.constraints.set_prescribed(trial);
+    step = trial;
+    step -= u;
+    const bool complete = step.linfty_norm() == 0;
+    if (complete || spec.newton_reduction == 1)
+      {
+        now            = evaluate(trial);
+        first_residual = now.residual;
+        if (complete || is_small(now))
+          {
+            u = trial;
+            return;
+          }
+      }
+
     // A prescribed motion alone would crush the cells next to it. From the
     // guess without it, one linear solve takes it into the body.
-    balance.constraints.interpolate_hanging(u);
-    const auto guess = evaluate(u);
-    if (!guess.admissible)
-      return false;
-    first_residual = guess.residual;
-    trial          = u;
-    balance.constraints.set_prescribed(trial);
-    trial -= u;
-    if (trial.linfty_norm() == 0)
-      return true;
+    now = evaluate(u);
+    if (!now.admissible)
+      return;
 
     // `lift` is the prescribed part, the free part follows from it.
-    step = trial;
     for (unsigned int i = 0; i < step.locally_owned_size(); ++i)
       if (!balance.constraints.is_constrained[i])
         step.local_element(i) = 0;
-    Vector lift = step;
-    balance.vmult_lift(right_side, lift);
-    right_side += balance.residual();
+    Vector       lift     = step;
+    const Vector residual = balance.residual();
+    linear_solver.vmult_lift(right_side, lift);
+    right_side += residual;
     right_side *= -1.;
     first_residual = right_side.l2_norm() / balance.unit_of_residual();
     result.linear_iterations +=
@@ -63,7 +75,7 @@ namespace impm
     u += lift;
     u += step;
     balance.constraints.set_prescribed(u);
-    return true;
+    now = evaluate(u);
   }
 
   template <int dim>
@@ -72,7 +84,8 @@ namespace impm
   {
     // A slender body resists with little force: what is small against the
     // forces of its material may still be all that happens in the step.
-    return evaluation.residual <= spec.newton_tolerance &&
+    return evaluation.admissible &&
+           evaluation.residual <= spec.newton_tolerance &&
            evaluation.residual <= spec.newton_reduction * first_residual;
   }
 
@@ -83,14 +96,12 @@ namespace impm
     Result       result;
     const double guess_norm = u.linfty_norm();
     Evaluation   now;
-    if (start(u, result))
-      now = evaluate(u);
+    start(u, result, now);
     if (!now.admissible && guess_norm > 0)
       {
         // The guess may be worse than none.
         u = 0;
-        if (start(u, result))
-          now = evaluate(u);
+        start(u, result, now);
       }
     if (!now.admissible)
       {

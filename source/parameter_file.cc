@@ -9,6 +9,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <sstream>
 
 namespace impm
@@ -103,6 +104,40 @@ namespace impm
     }
   } // namespace
 
+  namespace
+  {
+    /** Choices between methods for one and the same problem. */
+    bool
+    is_method(const std::string &path)
+    {
+      static const std::set<std::string> methods = {"Grid/Method",
+                                                    "Time/Integrator",
+                                                    "Time/Formulation",
+                                                    "Time/CFL number",
+                                                    "Solver/Linear solver",
+                                                    "Solver/Operator"};
+      return methods.count(path) > 0;
+    }
+
+    std::set<std::vector<std::string>>
+    declared_entries(const dealii::ParameterHandler &prm)
+    {
+      std::ostringstream listing;
+      prm.print_parameters(listing,
+                           dealii::ParameterHandler::ShortPRM |
+                             dealii::ParameterHandler::KeepDeclarationOrder);
+      std::set<std::vector<std::string>> entries;
+      for_each_entry(listing.str(),
+                     [&](const std::vector<std::string> &path,
+                         unsigned int,
+                         const bool is_subsection) {
+                       if (!is_subsection)
+                         entries.insert(path);
+                     });
+      return entries;
+    }
+  } // namespace
+
   ParameterFile::ParameterFile(const std::string              &file_name,
                                const std::vector<std::string> &overrides,
                                const Declare                  &declare)
@@ -119,12 +154,22 @@ namespace impm
     prm = std::make_unique<dealii::ParameterHandler>();
     for (unsigned int reading = 1; reading <= n_readings; ++reading)
       {
-        const auto before = std::move(prm);
-        prm               = std::make_unique<dealii::ParameterHandler>();
-        declare(*prm,
-                [&](const std::string &path, const std::string &fallback) {
-                  return look_up(*before, path, fallback);
-                });
+        const auto before   = std::move(prm);
+        prm                 = std::make_unique<dealii::ParameterHandler>();
+        const Chosen chosen = [&](const std::string &path,
+                                  const std::string &fallback) {
+          return look_up(*before, path, fallback);
+        };
+        declare(*prm, chosen);
+        if (reading == n_readings)
+          {
+            dealii::ParameterHandler others;
+            declare(others,
+                    [&](const std::string &path, const std::string &fallback) {
+                      return is_method(path) ? "any" : chosen(path, fallback);
+                    });
+            drop_idle_entries(others);
+          }
         read(*prm, reading == n_readings);
       }
   }
@@ -160,6 +205,54 @@ namespace impm
                " a section Study of its own, allowed is a scene without");
       });
     sources.insert(sources.begin(), {name, text});
+  }
+
+  void
+  ParameterFile::drop_idle_entries(const dealii::ParameterHandler &others)
+  {
+    const auto active = declared_entries(*prm), all = declared_entries(others);
+    const auto is_idle = [&](const std::vector<std::string> &path) {
+      return active.count(path) == 0 && all.count(path) > 0;
+    };
+    const auto warn = [&](const std::string              &place,
+                          const std::vector<std::string> &path) {
+      std::string name;
+      for (const auto &part : path)
+        name += (name.empty() ? "" : "/") + part;
+      warnings.push_back(place + ": entry '" + name +
+                         "' does nothing in this scene");
+    };
+    for (auto &source : sources)
+      {
+        std::set<unsigned int> idle;
+        for_each_entry(source.text,
+                       [&](const std::vector<std::string> &path,
+                           const unsigned int              line,
+                           const bool                      is_subsection) {
+                         if (is_subsection || !is_idle(path))
+                           return;
+                         idle.insert(line);
+                         warn("file " + source.name + ", line " +
+                                std::to_string(line),
+                              path);
+                       });
+        // Lines stay where they are, for messages that count them.
+        std::istringstream in(source.text);
+        std::string        line, kept;
+        for (unsigned int number = 1; std::getline(in, line); ++number)
+          kept += (idle.count(number) > 0 ? "" : line) + "\n";
+        source.text = kept;
+      }
+    const auto end = std::remove_if(overrides.begin(),
+                                    overrides.end(),
+                                    [&](const std::string &override) {
+                                      const auto path = path_of(override);
+                                      if (!is_idle(path))
+                                        return false;
+                                      warn("--set " + override, path);
+                                      return true;
+                                    });
+    overrides.erase(end, overrides.end());
   }
 
   void

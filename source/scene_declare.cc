@@ -314,9 +314,11 @@ namespace impm
       prm.enter_subsection("Time");
       prm.declare_entry("Integrator",
                         "quasi-static",
-                        Patterns::Selection("quasi-static|theta|Newmark"),
-                        "Quasi-static: no inertia. Theta: Sulsky & Kaul "
-                        "(2004), eq. 2.4.1. Newmark: Guilkey & Weiss (2003).");
+                        Patterns::Selection(
+                          "quasi-static|explicit|theta|Newmark"),
+                        "Quasi-static: no inertia. Explicit and theta: Sulsky "
+                        "& Kaul (2004), section 2.3.1 and eq. 2.4.1. Newmark: "
+                        "Guilkey & Weiss (2003).");
       const auto integrator = chosen("Time/Integrator", "quasi-static");
       if (may_be(integrator, "Newmark"))
         {
@@ -339,9 +341,19 @@ namespace impm
       if (may_be(integrator, "theta"))
         prm.declare_entry("Theta",
                           "1",
-                          Patterns::Double(0.5, 1),
-                          "Weight of the forces at the end of the step; 1: "
-                          "backward Euler, 0.5: trapezoidal.");
+                          Patterns::Double(0, 1),
+                          "Weight of the forces at the end of the step (mu in "
+                          "the paper); 1: backward Euler, 0.5: trapezoidal, 0: "
+                          "explicit. Below 0.5, long steps are unstable.");
+      if (integrator != "quasi-static" &&
+          chosen("Grid/Method", "MPM") != "Lagrangian")
+        prm.declare_entry("Formulation",
+                          "velocity",
+                          Patterns::Selection("velocity|momentum"),
+                          "Strain from the grid's velocity, or from one that "
+                          "has been mapped to the points and back (Sulsky & "
+                          "Kaul 2004, section 3.2.1), which spares nodes with "
+                          "little mass and makes the tangent unsymmetric.");
       if (integrator != "quasi-static" &&
           chosen("Grid/Method", "MPM") != "Lagrangian")
         prm.declare_entry("Transfer",
@@ -354,10 +366,19 @@ namespace impm
                         "1",
                         Patterns::Double(tiny),
                         "When the run ends (s).");
-      prm.declare_entry("Time step",
-                        "0.01",
-                        Patterns::Double(tiny),
-                        "Of the first step (s).");
+      if (integrator != "quasi-static")
+        prm.declare_entry("CFL number",
+                          "0",
+                          Patterns::Double(0),
+                          "Time step in units of the smallest cell over the "
+                          "largest speed of elastic waves and points; 0: given "
+                          "in seconds.");
+      const auto cfl_number = chosen("Time/CFL number", "0");
+      if (cfl_number == "any" || Patterns::Double(0, 0).match(cfl_number))
+        prm.declare_entry("Time step",
+                          "0.01",
+                          Patterns::Double(tiny),
+                          "Of the first step (s).");
       prm.declare_entry("Growth",
                         "1",
                         Patterns::Double(1, 2),
@@ -365,12 +386,13 @@ namespace impm
       prm.declare_entry("Largest time step",
                         "",
                         Patterns::Anything(),
-                        "Where growth ends (s); empty: the first step's.");
+                        "Where growth ends (s, or CFL number); empty: the "
+                        "first step's.");
       prm.declare_entry("Smallest time step",
                         "0.001",
                         Patterns::Double(tiny, 1),
                         "How small a step may be cut before the run gives up, "
-                        "as a fraction of 'Time step'.");
+                        "as a fraction of the first step.");
       prm.declare_entry("Largest number of steps",
                         "10000000",
                         Patterns::Integer(1),
@@ -382,17 +404,30 @@ namespace impm
     declare_solver(ParameterHandler &prm, const ParameterFile::Chosen &chosen)
     {
       prm.enter_subsection("Solver");
+      if (chosen("Time/Integrator", "quasi-static") == "explicit")
+        {
+          prm.leave_subsection();
+          return;
+        }
+      prm.declare_entry("Residual scale",
+                        "body",
+                        Patterns::Selection("body|cell"),
+                        "Unit of the norm of residuals. Body: that of the "
+                        "forces of all material at a strain of one. Cell: "
+                        "largest Young's modulus times dx dy (dz) of the "
+                        "smallest cell (Sulsky & Kaul 2004, section 3.2.2).");
       prm.declare_entry("Newton tolerance",
                         "1e-7",
                         Patterns::Double(tiny, 1),
-                        "Norm of the residual over that of the forces at a "
-                        "strain of one, hence of the order of an error in "
+                        "Norm of the residual in units of the residual scale; "
+                        "with that of the body of the order of an error in "
                         "strain.");
       prm.declare_entry("Newton reduction",
                         "1e-3",
                         Patterns::Double(tiny, 1),
                         "And over that at the start of the step: where little "
-                        "happens in a step, it must be solved, too.");
+                        "happens in a step, it must be solved, too. 1: the "
+                        "tolerance alone, so that the first guess may do.");
       prm.declare_entry("Newton iterations",
                         "50",
                         Patterns::Integer(1),
@@ -416,8 +451,15 @@ namespace impm
           prm.declare_entry("Linear iterations",
                             "1000",
                             Patterns::Integer(1),
-                            "Largest number before the direct solver takes "
-                            "over.");
+                            "Largest number in a linear solve.");
+          prm.declare_entry("Unfinished solves",
+                            "automatic",
+                            Patterns::Selection(
+                              "automatic|direct solver|next Newton step"),
+                            "Who takes over after the largest number. "
+                            "Automatic: the direct solver in the velocity "
+                            "formulation, Newton's method in the momentum "
+                            "formulation, whose matrix is never built.");
           prm.declare_entry("Preconditioner",
                             "AMG",
                             Patterns::Selection("AMG|Jacobi|none"),
@@ -425,11 +467,21 @@ namespace impm
                             "the rigid-body modes.");
           prm.declare_entry("Operator",
                             "matrix",
-                            Patterns::Selection("matrix|matrix-free"),
+                            Patterns::Selection(
+                              "matrix|matrix-free|difference quotient"),
                             "How the tangent is applied; AMG needs the matrix "
-                            "in any case.");
+                            "in any case. Difference quotient: of residuals "
+                            "(Sulsky & Kaul 2004, eq. 2.4.18), one evaluation "
+                            "of all laws each time.");
+          if (may_be(chosen("Solver/Operator", "matrix"),
+                     "difference quotient"))
+            prm.declare_entry("Difference step",
+                              "1e-5",
+                              Patterns::Double(1e-12, 0.1),
+                              "h of the difference quotient, relative to the "
+                              "norm of the increment.");
         }
-      if (solver == "GMRES")
+      if (may_be(solver, "GMRES"))
         prm.declare_entry("GMRES directions",
                           "50",
                           Patterns::Integer(2),
@@ -441,10 +493,14 @@ namespace impm
     declare_stabilization(ParameterHandler            &prm,
                           const ParameterFile::Chosen &chosen)
     {
-      // Cells of a Lagrangian grid are full.
-      if (chosen("Grid/Method", "MPM") == "Lagrangian")
-        return;
       prm.enter_subsection("Stabilization");
+      // Cells of a Lagrangian grid are full; explicit forces need no solve.
+      if (chosen("Grid/Method", "MPM") == "Lagrangian" ||
+          chosen("Time/Integrator", "quasi-static") == "explicit")
+        {
+          prm.leave_subsection();
+          return;
+        }
       prm.declare_entry("Ghost penalty",
                         "0.033",
                         Patterns::Double(0, 10),

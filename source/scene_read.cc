@@ -197,6 +197,10 @@ namespace impm
       time.integrator = prm.get("Integrator");
       if (time.integrator == "theta")
         time.theta = prm.get_double("Theta");
+      if (time.integrator == "explicit")
+        time.theta = 0;
+      if (!lagrangian && time.integrator != "quasi-static")
+        time.momentum_formulation = prm.get("Formulation") == "momentum";
       if (time.integrator == "Newmark")
         {
           time.beta               = prm.get_double("Beta");
@@ -211,9 +215,18 @@ namespace impm
           time.transfer              = transfer == "FLIP" ? TransferKind::flip :
                                        transfer == "PIC"  ? TransferKind::pic :
                                                             TransferKind::apic;
+          if (time.momentum_formulation && transfer != "FLIP")
+            throw InputError("Transfer",
+                             "found '" + transfer +
+                               "', allowed in the momentum formulation, which "
+                               "maps changes of velocity, is FLIP");
         }
-      time.end          = prm.get_double("End time");
-      time.step         = prm.get_double("Time step");
+      time.end = prm.get_double("End time");
+      if (time.integrator != "quasi-static")
+        time.cfl_number = prm.get_double("CFL number");
+      const std::string step_entry =
+        time.cfl_number > 0 ? "CFL number" : "Time step";
+      time.step         = prm.get_double(step_entry);
       time.growth       = prm.get_double("Growth");
       time.largest_step = time.step;
       if (!prm.get("Largest time step").empty())
@@ -221,33 +234,57 @@ namespace impm
       if (time.largest_step < time.step)
         throw InputError("Largest time step",
                          "found '" + prm.get("Largest time step") +
-                           "', allowed is at least 'Time step' = " +
-                           prm.get("Time step"));
+                           "', allowed is at least '" + step_entry +
+                           "' = " + prm.get(step_entry));
       if (time.growth > 1 && time.largest_step == time.step)
         throw InputError("Growth",
                          "found '" + prm.get("Growth") +
                            "', which does nothing without a 'Largest time "
-                           "step' above 'Time step'");
+                           "step' above '" +
+                           step_entry + "'");
       time.smallest_step           = prm.get_double("Smallest time step");
       time.largest_number_of_steps = prm.get_integer("Largest number of steps");
       return time;
     }
 
     SolverSpec
-    read_solver(const ParameterHandler &prm)
+    read_solver(const ParameterHandler &prm, const TimeSpec &time)
     {
       SolverSpec solver;
+      solver.residual_scale    = prm.get("Residual scale") == "cell" ?
+                                   ResidualScale::cell :
+                                   ResidualScale::body;
       solver.newton_tolerance  = prm.get_double("Newton tolerance");
       solver.newton_reduction  = prm.get_double("Newton reduction");
       solver.newton_iterations = prm.get_integer("Newton iterations");
       solver.line_search       = prm.get_bool("Line search");
       solver.linear_solver     = prm.get("Linear solver");
+      if (time.momentum_formulation && solver.linear_solver != "GMRES")
+        throw InputError("Linear solver",
+                         "found '" + solver.linear_solver +
+                           "', allowed with the momentum formulation, whose "
+                           "tangent is unsymmetric and never a matrix, is "
+                           "GMRES");
       if (solver.linear_solver != "direct")
         {
           solver.linear_tolerance  = prm.get_double("Linear tolerance");
           solver.linear_iterations = prm.get_integer("Linear iterations");
           solver.preconditioner    = prm.get("Preconditioner");
-          solver.matrix_free       = prm.get("Operator") == "matrix-free";
+          const std::string kind   = prm.get("Operator");
+          solver.tangent           = kind == "matrix" ? TangentKind::matrix :
+                                     kind == "matrix-free" ?
+                                                        TangentKind::matrix_free :
+                                                        TangentKind::difference_quotient;
+          if (solver.tangent == TangentKind::difference_quotient)
+            solver.difference_step = prm.get_double("Difference step");
+          const std::string unfinished = prm.get("Unfinished solves");
+          if (time.momentum_formulation && unfinished == "direct solver")
+            throw InputError("Unfinished solves",
+                             "found 'direct solver', allowed with the momentum "
+                             "formulation, whose tangent is never a matrix, is "
+                             "'next Newton step'");
+          solver.accept_unfinished =
+            time.momentum_formulation || unfinished == "next Newton step";
         }
       if (solver.linear_solver == "GMRES")
         solver.gmres_directions = prm.get_integer("GMRES directions");
@@ -483,9 +520,13 @@ namespace impm
       scene.body_force_is_initial =
         scene.body_force && prm.get("Coordinates") == "initial";
     });
-    in_section(prm, "Solver", [&]() { scene.solver = read_solver(prm); });
+    const bool explicit_steps = scene.time.integrator == "explicit";
+    if (!explicit_steps)
+      in_section(prm, "Solver", [&]() {
+        scene.solver = read_solver(prm, scene.time);
+      });
     scene.stabilization = {0, 0};
-    if (!lagrangian)
+    if (!lagrangian && !explicit_steps)
       in_section(prm, "Stabilization", [&]() {
         scene.stabilization.ghost_penalty = prm.get_double("Ghost penalty");
         scene.stabilization.isolated_stiffness =

@@ -13,20 +13,6 @@ namespace impm
 {
   using namespace dealii;
 
-  namespace
-  {
-    template <int dim>
-    bool
-    all_have_potential(const Scene<dim> &scene)
-    {
-      return std::all_of(scene.bodies.begin(),
-                         scene.bodies.end(),
-                         [](const auto &body) {
-                           return body.rigid || body.material->has_potential();
-                         });
-    }
-  } // namespace
-
   template <int dim>
   Simulation<dim>::Simulation(const Scene<dim>            &scene,
                               const CommandLine::Verbosity verbosity,
@@ -40,9 +26,7 @@ namespace impm
     , rigid(scene, grid)
     , integrator(make_time_integrator(scene.time))
     , balance(scene, grid, points, rigid, *integrator)
-    , linear_solver(scene.solver, balance, timer)
-    , newton(
-        scene.solver, balance, linear_solver, all_have_potential(scene), timer)
+    , step_solver(scene, balance, *integrator, timer)
     , pictures(scene.output, points, rigid, balance)
     , history(scene, points, rigid, balance)
     , reference(scene, points, history)
@@ -112,7 +96,16 @@ namespace impm
   }
 
   template <int dim>
-  typename NewtonSolver<dim>::Result
+  double
+  Simulation<dim>::step_unit() const
+  {
+    if (scene.time.cfl_number == 0)
+      return 1;
+    return balance.grid.smallest_cell_extent() / largest_speed(points);
+  }
+
+  template <int dim>
+  typename StepSolver<dim>::Result
   Simulation<dim>::attempt(const double dt)
   {
     report.dt = dt;
@@ -120,11 +113,7 @@ namespace impm
       TimerOutput::Scope scope(timer, "set-up of the step");
       balance.begin_step(time, dt);
     }
-    linear_solver.begin_step();
-    u = 0;
-    if (integrator->has_inertia())
-      u.equ(dt, balance.velocity);
-    auto result = newton.solve(u);
+    auto result = step_solver.solve(dt, u);
     report.newton_iterations += result.iterations;
     report.linear_iterations += result.linear_iterations;
     report.line_searches += result.line_searches;
@@ -139,7 +128,6 @@ namespace impm
                        " /" + std::to_string(1 / result.step_lengths[i]) :
                        "");
     console.detail("  residuals:" + iterations.str());
-    balance.constraints.interpolate_hanging(u);
     if (result.converged)
       {
         result.failure   = forbidden_motion();
@@ -157,10 +145,11 @@ namespace impm
     report               = StepReport();
     report.step          = step;
     report.external_work = work;
-    const auto before    = linear_solver.n_fallbacks;
+    const auto before    = step_solver.linear_solver.n_fallbacks;
     // The last step ends on time, and none is a sliver.
     const double left = scene.time.end - time;
-    double       dt   = step_size;
+    const double unit = step_unit();
+    double       dt   = step_size * unit;
     if (left < 1.001 * dt)
       dt = left;
     else if (left < 1.999 * dt)
@@ -174,7 +163,7 @@ namespace impm
         console.detail("  step cut at t = " + std::to_string(time) +
                        ", dt = " + std::to_string(dt) + ": " + result.failure);
         dt /= 2;
-        if (dt < scene.time.smallest_step * scene.time.step)
+        if (dt < scene.time.smallest_step * scene.time.step * unit)
           {
             std::ostringstream where;
             where << "at t = " << time << " s, step " << report.step << ": "
@@ -183,7 +172,7 @@ namespace impm
             throw ComputationError(where.str());
           }
       }
-    report.solver_fallbacks = linear_solver.n_fallbacks - before;
+    report.solver_fallbacks = step_solver.linear_solver.n_fallbacks - before;
     report.held_cells       = balance.n_held_cells;
     report.limited_boxes =
       Utilities::MPI::sum(balance.n_limited_boxes(), communicator);
@@ -195,7 +184,7 @@ namespace impm
 
     // Grow; after a cut, back to the nominal step first.
     if (report.step_cuts > 0)
-      step_size = dt;
+      step_size = dt / unit;
     else if (step_size < scene.time.step)
       step_size = std::min(1.5 * step_size, scene.time.step);
     else
@@ -289,7 +278,7 @@ namespace impm
                {"line_searches", sums.line_searches},
                {"step_cuts", sums.cuts},
                {"tangent_projections", sums.projections},
-               {"solver_fallbacks", linear_solver.n_fallbacks},
+               {"solver_fallbacks", step_solver.linear_solver.n_fallbacks},
                {"noise_stops", sums.noise_stops},
                {"stress_evaluations",
                 Utilities::MPI::sum(balance.response.n_evaluations, communicator)},
@@ -305,6 +294,27 @@ namespace impm
     console.message(summary.phase_table());
     if (!summary.errors.empty())
       console.message(summary.error_table());
+  }
+
+  template <int dim>
+  void
+  Simulation<dim>::warn_of_instability()
+  {
+    if (!integrator->has_inertia() || scene.time.theta >= 0.5)
+      return;
+    // Of the highest mode of a grid of full cells, eq. 2.4.1.
+    const double unit =
+      balance.grid.smallest_cell_extent() / largest_speed(points);
+    const double limit = unit / std::sqrt(1 - 2 * scene.time.theta);
+    const double dt =
+      scene.time.largest_step * (scene.time.cfl_number > 0 ? unit : 1.);
+    if (dt <= 1.001 * limit)
+      return;
+    std::ostringstream text;
+    text << "warning: time steps of up to " << dt << " s grow without bound "
+         << "where they exceed about " << limit << " s, since theta is below "
+         << "0.5";
+    console.message(text.str());
   }
 
   template <int dim>
@@ -327,7 +337,8 @@ namespace impm
     MPI_Barrier(communicator);
     wall.restart();
     history.open(directory);
-    balance.begin_step(0, step_size);
+    balance.begin_step(0, step_size * step_unit());
+    warn_of_instability();
     if (scene.output.pictures)
       picture(false);
     next_picture = scene.output.picture_interval;

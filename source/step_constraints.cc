@@ -137,6 +137,7 @@ namespace impm
     constraints.merge(grid.hanging_nodes);
     const unsigned int n_local = dim * grid.node_positions().size();
     is_constrained.assign(n_local, false);
+    rests.assign(n_local, false);
     const auto &partitioner = *carriers.get_partitioner();
     for (unsigned int i = 0; i < n_local; ++i)
       {
@@ -149,13 +150,16 @@ namespace impm
               continue;
             constraints.add_line(dof);
             if (used)
-              constraints.set_inhomogeneity(
-                dof,
-                prescribed(static_cast<unsigned int>(carrier) - 1,
-                           i / dim,
-                           i % dim,
-                           time,
-                           dt));
+              {
+                const double value =
+                  prescribed(static_cast<unsigned int>(carrier) - 1,
+                             i / dim,
+                             i % dim,
+                             time,
+                             dt);
+                constraints.set_inhomogeneity(dof, value);
+                rests[i] = value == 0;
+              }
             else if (carrier > 0)
               carriers.local_element(i) = 0;
           }
@@ -170,6 +174,15 @@ namespace impm
   {
     for (unsigned int i = 0; i < vector.locally_owned_size(); ++i)
       if (is_constrained[i])
+        vector.local_element(i) = 0;
+  }
+
+  template <int dim>
+  void
+  StepConstraints<dim>::stop_held(Vector &vector) const
+  {
+    for (unsigned int i = 0; i < vector.locally_owned_size(); ++i)
+      if (rests[i])
         vector.local_element(i) = 0;
   }
 

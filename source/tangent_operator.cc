@@ -10,14 +10,16 @@ namespace impm
 
   template <int dim>
   void
-  MomentumBalance<dim>::apply_tangent(Vector &dst, const Vector &src) const
+  MomentumBalance<dim>::apply_tangent(Vector       &dst,
+                                      const Vector &strain_src,
+                                      const Vector &src) const
   {
     ++n_operator_applications;
-    gradients_at_points(src, gradient_increments);
+    gradients_at_points(strain_src, gradient_increments);
     response.apply_tangent(gradient_increments, stress_increments);
     dst = 0;
     add_point_forces(stress_increments, dst);
-    ghost.add_force(src, 1., dst);
+    ghost.add_force(strain_src, 1., dst);
     dst.compress(VectorOperation::add);
     constraints.condense_hanging(dst);
     const double force = integrator.force_factor();
@@ -33,7 +35,9 @@ namespace impm
     work = src;
     constraints.set_zero(work);
     constraints.interpolate_hanging(work);
-    apply_tangent(dst, work);
+    if (smoothing)
+      smoothing->apply_derivative(work, smooth);
+    apply_tangent(dst, smoothing ? smooth : work, work);
     for (unsigned int i = 0; i < dst.locally_owned_size(); ++i)
       if (constraints.is_constrained[i])
         dst.local_element(i) = src.local_element(i);
@@ -45,8 +49,38 @@ namespace impm
   {
     work = src;
     constraints.interpolate_hanging(work);
-    apply_tangent(dst, work);
+    if (smoothing)
+      smoothing->apply_derivative(work, smooth);
+    apply_tangent(dst, smoothing ? smooth : work, work);
     constraints.set_zero(dst);
+  }
+
+  template <int dim>
+  void
+  MomentumBalance<dim>::vmult_by_matrix(
+    const TrilinosWrappers::SparseMatrix &matrix,
+    Vector                               &dst,
+    const Vector                         &src) const
+  {
+    ++n_operator_applications;
+    if (!smoothing)
+      {
+        matrix.vmult(dst, src);
+        return;
+      }
+    // The matrix gives inertia to what strains.
+    work = src;
+    constraints.set_zero(work);
+    constraints.interpolate_hanging(work);
+    smoothing->apply_derivative(work, smooth);
+    matrix.vmult(dst, smooth);
+    for (unsigned int i = 0; i < dst.locally_owned_size(); ++i)
+      if (constraints.is_constrained[i])
+        dst.local_element(i) = src.local_element(i);
+      else
+        dst.local_element(i) +=
+          diagonal_stiffness(i) *
+          (src.local_element(i) - smooth.local_element(i));
   }
 
   template <int dim>

@@ -46,7 +46,8 @@ namespace impm
 
     /**
      * Sulsky & Kaul (2004), eq. 2.4.1 with u = dt v^L (eq. 2.3.2): positions
-     * move with the velocity at the end of the step whatever theta is.
+     * move with the velocity at the end of the step whatever theta is. Explicit
+     * with theta = 0 (section 2.3.1).
      */
     class Theta : public TimeIntegrator
     {
@@ -182,6 +183,8 @@ namespace impm
   std::unique_ptr<TimeIntegrator>
   make_time_integrator(const TimeSpec &spec)
   {
+    if (spec.integrator == "explicit")
+      return std::make_unique<Theta>(0);
     if (spec.integrator == "theta")
       return std::make_unique<Theta>(spec.theta);
     if (spec.integrator == "Newmark")

@@ -43,12 +43,6 @@ namespace impm
         {
           Vector change = end_velocity;
           change -= balance.velocity;
-          // What rests all through the step does not change. Else the points
-          // would lose at every step what they have at a wall they lean on.
-          for (unsigned int i = 0; i < change.locally_owned_size(); ++i)
-            if (balance.constraints.is_constrained[i] &&
-                end_velocity.local_element(i) == 0)
-              change.local_element(i) = 0;
           balance.constraints.interpolate_hanging(change);
           footprints.interpolate(change, at_points);
           for (unsigned int p = 0; p < points.size(); ++p)

@@ -36,6 +36,13 @@ namespace impm
     using std::runtime_error::runtime_error;
   };
 
+  /** A linear solve has nothing to go on with: Newton's method gives up. */
+  class LinearizationError : public std::runtime_error
+  {
+  public:
+    using std::runtime_error::runtime_error;
+  };
+
   /** The system failed (disk, memory): exit code 3. */
   class SystemError : public std::runtime_error
   {

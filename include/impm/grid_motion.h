@@ -9,7 +9,7 @@ namespace impm
   /**
    * From points to grid at the start of a step: lumped mass (kg), velocity
    * (m/s) with the momentum of the points, and acceleration if they carry
-   * one (m/s^2). Collective.
+   * one (m/s^2), both zero where a node is held at rest. Collective.
    */
   template <int dim>
   void

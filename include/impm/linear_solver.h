@@ -6,32 +6,41 @@
 #include <deal.II/lac/trilinos_precondition.h>
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 
-#include <impm/momentum_balance.h>
+#include <impm/difference_quotient.h>
 
 namespace impm
 {
   /**
    * Solves the linear systems of Newton's method: CG or GMRES of deal.II with
    * AMG, Jacobi or no preconditioner, or a direct solver, which also takes
-   * over, counted, where an iterative one fails.
+   * over, counted, where an iterative one fails, unless what it has then is
+   * good enough for Newton's method to go on.
    */
   template <int dim>
   class LinearSolver
   {
   public:
-    LinearSolver(const SolverSpec           &spec,
-                 const MomentumBalance<dim> &balance,
-                 dealii::TimerOutput        &timer);
+    LinearSolver(const SolverSpec     &spec,
+                 MomentumBalance<dim> &balance,
+                 dealii::TimerOutput  &timer);
 
     /** Prepares for the sparsity of a new step. Collective. */
     void
     begin_step();
 
+    /** Says that the balance stands evaluated at u, for what follows. */
+    void
+    linearize_at(const Vector &u);
+
+    /** dst = K src as MomentumBalance::vmult_lift. Collective. */
+    void
+    vmult_lift(Vector &dst, const Vector &src);
+
     /**
      * Solves with the tangent as it is now, to the residual `tolerance` times
      * that of zero (a direct solver to round-off). Returns the number of
-     * iterations. Throws ComputationError when even the direct solver fails.
-     * Collective.
+     * iterations. Throws ComputationError when even the direct solver fails,
+     * LinearizationError when there is no tangent. Collective.
      */
     unsigned int
     solve(Vector &x, const Vector &b, double tolerance);
@@ -51,13 +60,15 @@ namespace impm
     bool
     needs_matrix() const
     {
-      return spec.linear_solver == "direct" || !spec.matrix_free ||
+      return spec.linear_solver == "direct" ||
+             spec.tangent == TangentKind::matrix ||
              spec.preconditioner == "AMG";
     }
 
-    const SolverSpec           &spec;
-    const MomentumBalance<dim> &balance;
-    dealii::TimerOutput        &timer;
+    const SolverSpec       &spec;
+    MomentumBalance<dim>   &balance;
+    DifferenceQuotient<dim> quotient;
+    dealii::TimerOutput    &timer;
 
     bool                                      matrix_is_current = false;
     dealii::TrilinosWrappers::SparseMatrix    matrix;

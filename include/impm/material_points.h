@@ -154,6 +154,14 @@ namespace impm
     std::vector<std::shared_ptr<Material>> materials; ///< by body
     std::vector<double *>                  data;
   };
+
+  /**
+   * Largest speed (m/s) at which news travel: of elastic waves at rest, plus
+   * that of the fastest point. Collective.
+   */
+  template <int dim>
+  double
+  largest_speed(const MaterialPoints<dim> &points);
 } // namespace impm
 
 #endif

@@ -9,6 +9,7 @@
 #include <impm/point_response.h>
 #include <impm/step_constraints.h>
 #include <impm/time_integrator.h>
+#include <impm/velocity_smoothing.h>
 
 #include <memory>
 
@@ -49,6 +50,13 @@ namespace impm
       double residual   = 0;     ///< scaled, see begin_step
       double round_off  = 0;     ///< below this `residual` is noise
     };
+
+    /**
+     * The increment of an explicit step, which the forces at its start give:
+     * what is prescribed included. Collective.
+     */
+    void
+    explicit_increment(Vector &u) const;
 
     /**
      * Evaluates forces and, unless told not to, the tangent at `u`, which
@@ -118,9 +126,16 @@ namespace impm
     void
     vmult_lift(Vector &dst, const Vector &src) const;
 
+    /** The same as vmult by the matrix that assemble() has filled. */
+    void
+    vmult_by_matrix(const dealii::TrilinosWrappers::SparseMatrix &matrix,
+                    Vector                                       &dst,
+                    const Vector                                 &src) const;
+
     /**
-     * The diagonal of vmult. At masters of hanging nodes the terms that couple
-     * a hanging node to its master are left out. Collective.
+     * The diagonal of vmult, of the velocity formulation in any case. At
+     * masters of hanging nodes the terms that couple a hanging node to its
+     * master are left out. Collective.
      */
     void
     diagonal(Vector &diagonal) const;
@@ -129,15 +144,20 @@ namespace impm
     void
     initialize_matrix(dealii::TrilinosWrappers::SparseMatrix &matrix) const;
 
-    /** Fills it with the tangent. Collective. */
+    /** Fills it with the tangent of the velocity formulation. Collective. */
     void
     assemble(dealii::TrilinosWrappers::SparseMatrix &matrix) const;
 
-    /** External force (N), with the sign of an internal one, by local index. */
+    /**
+     * External force of the step (N), with the sign of an internal one, by
+     * local index.
+     */
     double
     load_at(const unsigned int index) const
     {
-      return load.local_element(index);
+      const double factor = integrator.force_factor();
+      return factor * load.local_element(index) +
+             (factor < 1 ? (1 - factor) * start_load.local_element(index) : 0.);
     }
 
     /** Whether a rotation of the body is free of energy. */
@@ -195,6 +215,10 @@ namespace impm
     void
     gather_start_forces();
 
+    /** Stiffness times the size of a cell, Sulsky & Kaul's unit of forces. */
+    double
+    force_of_cell() const;
+
     void
     hold_isolated_cells();
 
@@ -208,8 +232,15 @@ namespace impm
                 0.);
     }
 
+    /** `strain_src` is what strains, `src` what has inertia. */
     void
-    apply_tangent(Vector &dst, const Vector &src) const;
+    apply_tangent(Vector       &dst,
+                  const Vector &strain_src,
+                  const Vector &src) const;
+
+    /** Adds inertia to `forces` and to its potential; returns its norm. */
+    double
+    add_inertia(const Vector &u, double &potential);
 
     using Patch = typename Footprints<dim>::Patch;
 
@@ -241,8 +272,9 @@ namespace impm
     GhostPenalty<dim>                            ghost;
     Vector holding;            ///< stiffness of isolated cells (N/m)
     Vector known_acceleration; ///< (m/s^2)
-    Vector load;               ///< minus the external forces (N)
+    Vector load, start_load;   ///< minus the external forces (N)
     Vector start_forces;       ///< f(0) (N), if the integrator weighs it
+    Vector start_increment;    ///< dt v (m), in the momentum formulation
     double force_scale;        ///< norm of the forces at a strain of one (N)
     double smallest_extent;    ///< of a cell (m)
 
@@ -250,8 +282,9 @@ namespace impm
 
     mutable std::vector<double> gradient_increments, stress_increments;
     mutable std::vector<double> slopes, shares; ///< of a point on its patch
-    mutable Vector              work;
-    Vector                      forces, free_residual;
+    mutable Vector              work, smooth;
+    const std::unique_ptr<VelocitySmoothing<dim>> smoothing; ///< or null
+    Vector                                        forces, free_residual;
   };
 } // namespace impm
 

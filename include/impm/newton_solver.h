@@ -50,8 +50,9 @@ namespace impm
     Evaluation
     evaluate(const Vector &u);
 
-    bool
-    start(Vector &u, Result &result);
+    /** From a guess to a first iterate that satisfies the constraints. */
+    void
+    start(Vector &u, Result &result, Evaluation &now);
 
     bool
     is_small(const Evaluation &evaluation) const;

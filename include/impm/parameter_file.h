@@ -58,6 +58,12 @@ namespace impm
 
     const std::string file_name;
 
+    /**
+     * Entries that are set but do nothing under the choices of this scene;
+     * they would under another method, so that a study may compare them.
+     */
+    std::vector<std::string> warnings;
+
   private:
     struct Source
     {
@@ -69,6 +75,10 @@ namespace impm
 
     void
     read(dealii::ParameterHandler &prm, bool strict) const;
+
+    /** Takes out of the sources what only `others` declares, with warnings. */
+    void
+    drop_idle_entries(const dealii::ParameterHandler &others);
 
     std::vector<std::string>                  overrides;
     std::vector<Source>                       sources; ///< the last one wins

@@ -118,27 +118,58 @@ namespace impm
 
   struct TimeSpec
   {
-    std::string  integrator;
-    double       theta = 1;
-    double       beta = 0.25, gamma = 0.5;   ///< of Newmark's method
-    bool         keeps_acceleration = false; ///< at the points
-    TransferKind transfer           = TransferKind::flip;
+    std::string integrator;
+    double      theta = 1;
+    double      beta = 0.25, gamma = 0.5;   ///< of Newmark's method
+    bool        keeps_acceleration = false; ///< at the points
+    /** Strain from a velocity that has been through the points. */
+    bool         momentum_formulation = false;
+    double       cfl_number           = 0; ///< 0: `step` is given
+    TransferKind transfer             = TransferKind::flip;
     double       end, step, growth, largest_step, smallest_step;
     unsigned int largest_number_of_steps;
   };
 
+  /** What a residual is measured in. */
+  enum class ResidualScale
+  {
+    body, ///< norm of the forces of all material at a strain of one
+    cell  ///< Young's modulus times the size of a cell
+  };
+
+  /** How the tangent is applied. */
+  enum class TangentKind
+  {
+    matrix,
+    matrix_free,
+    difference_quotient ///< of residuals
+  };
+
   struct SolverSpec
   {
-    double       newton_tolerance;
-    double       newton_reduction;
-    unsigned int newton_iterations;
-    bool         line_search;
-    std::string  linear_solver; ///< CG, GMRES, direct
-    double       linear_tolerance  = 0;
-    unsigned int linear_iterations = 0;
-    unsigned int gmres_directions  = 0;
-    std::string  preconditioner    = "none"; ///< AMG, Jacobi, none
-    bool         matrix_free       = false;
+    ResidualScale residual_scale = ResidualScale::body;
+    double        newton_tolerance;
+    double        newton_reduction;
+    unsigned int  newton_iterations;
+    bool          line_search;
+    std::string   linear_solver; ///< CG, GMRES, direct
+    double        linear_tolerance  = 0;
+    unsigned int  linear_iterations = 0;
+    unsigned int  gmres_directions  = 0;
+    std::string   preconditioner    = "none"; ///< AMG, Jacobi, none
+    TangentKind   tangent           = TangentKind::matrix;
+    double        difference_step   = 0;
+    /** An iterative solver that ends early leaves the rest to Newton's method
+     * rather than to the direct solver. */
+    bool accept_unfinished = false;
+
+    /** Whether the tangent at the points is not asked for. */
+    bool
+    without_tangent() const
+    {
+      return tangent == TangentKind::difference_quotient &&
+             preconditioner == "none" && accept_unfinished;
+    }
   };
 
   struct StabilizationSpec

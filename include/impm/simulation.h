@@ -7,9 +7,9 @@
 #include <impm/command_line.h>
 #include <impm/console.h>
 #include <impm/history.h>
-#include <impm/newton_solver.h>
 #include <impm/pictures.h>
 #include <impm/reference.h>
+#include <impm/step_solver.h>
 
 namespace impm
 {
@@ -49,8 +49,16 @@ namespace impm
     void
     advance();
 
-    typename NewtonSolver<dim>::Result
+    typename StepSolver<dim>::Result
     attempt(double dt);
+
+    /** What time steps are counted in (s): a CFL number of one, or 1. */
+    double
+    step_unit() const;
+
+    /** Warns of steps that a theta below one half cannot take. */
+    void
+    warn_of_instability();
 
     void
     commit();
@@ -85,8 +93,7 @@ namespace impm
     RigidBodies<dim>                      rigid;
     const std::unique_ptr<TimeIntegrator> integrator;
     MomentumBalance<dim>                  balance;
-    LinearSolver<dim>                     linear_solver;
-    NewtonSolver<dim>                     newton;
+    StepSolver<dim>                       step_solver;
     Pictures<dim>                         pictures;
     History<dim>                          history;
     Reference<dim>                        reference;

@@ -73,6 +73,14 @@ namespace impm
     /** Whether a local element is constrained. */
     std::vector<char> is_constrained;
 
+    /**
+     * Zero where a face or a rigid body holds a node at rest in this step. The
+     * points around it go on moving until forces stop them: were their motion
+     * taken for the node's, the wall would stop its mass anew in every step.
+     */
+    void
+    stop_held(Vector &vector) const;
+
   private:
     void
     mark_carriers();
@@ -98,6 +106,7 @@ namespace impm
       std::vector<std::pair<unsigned int, double>> masters;
     };
     std::vector<HangingValue> hanging; ///< those that this rank owns
+    std::vector<char>         rests;   ///< whether held without motion
   };
 } // namespace impm
 

@@ -25,6 +25,13 @@ namespace impm
     virtual bool
     has_inertia() const = 0;
 
+    /** Whether the forces at the start alone give the step. */
+    bool
+    is_explicit() const
+    {
+      return has_inertia() && force_factor() == 0;
+    }
+
     /** Whether the points carry their acceleration from step to step. */
     virtual bool
     keeps_acceleration() const

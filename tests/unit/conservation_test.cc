@@ -89,8 +89,10 @@ namespace
     EXPECT_LT(largest, 1e-12);
     const auto end = total(model.points);
     EXPECT_GT(end.strain_energy + end.plastic_work, 1e-6);
+    // That of explicit steps oscillates with dt.
+    const double slack = model.integrator->is_explicit() ? 0.03 : 1e-12;
     EXPECT_LT(end.strain_energy + end.plastic_work + end.kinetic_energy,
-              start.kinetic_energy * (1 + 1e-12));
+              start.kinetic_energy * (1 + slack));
   }
 
   const Overrides space        = {"Geometry/box/Lower corner=0.3, 0.4, 0.4",
@@ -139,6 +141,33 @@ TEST(ConservationMpi, EveryTransferKeepsMomentum)
              half_refined + Overrides{"Time/Integrator=Newmark",
                                       "Time/Acceleration from=" + from,
                                       "Time/Transfer=" + transfer});
+}
+
+
+TEST(ConservationMpi, MomentumFormulationKeepsMomentum)
+{
+  const Overrides momentum = {"Time/Formulation=momentum",
+                              "Solver/Linear solver=GMRES",
+                              "Solver/Linear tolerance=1e-10"};
+  fly<2>("plane strain", momentum + half_refined + plastic);
+  fly<2>("axisymmetric", momentum + half_refined);
+  fly<2>("plane strain", momentum + Overrides{"Grid/Method=GIMP"});
+  fly<3>("3D", momentum + space);
+}
+
+
+TEST(ConservationMpi, ExplicitStepsKeepMomentum)
+{
+  const Overrides explicit_steps = {"Time/Integrator=explicit",
+                                    "Time/Time step=0.02"};
+  for (const std::string formulation : {"velocity", "momentum"})
+    {
+      const Overrides all =
+        explicit_steps + Overrides{"Time/Formulation=" + formulation};
+      fly<2>("plane strain", all + half_refined + plastic);
+      fly<2>("axisymmetric", all + half_refined);
+      fly<3>("3D", all + space + half_refined);
+    }
 }
 
 

@@ -198,6 +198,23 @@ TEST(ParallelMpi, FiniteElements)
 }
 
 
+TEST(ParallelMpi, MomentumFormulationAndExplicitSteps)
+{
+  const Overrides momentum = {"Time/Formulation=momentum"};
+  compare<2>(upsetting(),
+             platen_is_a_body + momentum +
+               Overrides{"Solver/Linear solver=GMRES",
+                         "Solver/Linear tolerance=1e-10"});
+  for (const auto &formulation : {Overrides{}, momentum})
+    compare<2>(upsetting(),
+               platen_is_a_face + split + formulation +
+                 Overrides{"Time/Integrator=explicit",
+                           "Time/Time step=0.01",
+                           "Time/End time=0.05",
+                           "Materials/steel/Yield stress=0.001"});
+}
+
+
 TEST(ParallelMpi, PlatenOfPoints)
 {
   compare<2>(upsetting(), platen_is_a_body);

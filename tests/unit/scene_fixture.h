@@ -4,7 +4,7 @@
 #include <deal.II/base/conditional_ostream.h>
 #include <deal.II/base/timer.h>
 
-#include <impm/newton_solver.h>
+#include <impm/step_solver.h>
 #include <impm/transfer.h>
 
 #include <unistd.h>
@@ -157,8 +157,7 @@ namespace impm
       , rigid(scene, grid)
       , integrator(make_time_integrator(scene.time))
       , balance(scene, grid, points, rigid, *integrator)
-      , linear_solver(scene.solver, balance, timer)
-      , newton(scene.solver, balance, linear_solver, true, timer)
+      , step_solver(scene, balance, *integrator, timer)
     {}
 
     Vector
@@ -266,17 +265,12 @@ namespace impm
     }
 
     /** Solves for one step, as Simulation does, and leaves it there. */
-    typename NewtonSolver<dim>::Result
+    typename StepSolver<dim>::Result
     solve(Vector &u)
     {
       begin_step();
-      linear_solver.begin_step();
       u = vector();
-      if (integrator->has_inertia())
-        u.equ(dt, balance.velocity);
-      const auto result = newton.solve(u);
-      balance.constraints.interpolate_hanging(u);
-      return result;
+      return step_solver.solve(dt, u);
     }
 
     const Scene<dim>                scene;
@@ -287,8 +281,7 @@ namespace impm
     RigidBodies<dim>                rigid;
     std::unique_ptr<TimeIntegrator> integrator;
     MomentumBalance<dim>            balance;
-    LinearSolver<dim>               linear_solver;
-    NewtonSolver<dim>               newton;
+    StepSolver<dim>                 step_solver;
     double                          time = 0, dt = scene.time.step;
   };
 } // namespace impm

@@ -139,7 +139,7 @@ TEST(Scene, ValuesThatCannotBe)
                {"radius"});
   // outside what the pattern of the entry allows: with the line
   expect_blame({"Grid/Cells=0, 4"}, "", {"Cells"});
-  expect_blame({"Time/Theta=0.5"}, "", {"Theta"}); // quasi-static
+  expect_blame({"Grid/Refine where=x"}, "", {"Refine where"}); // unrefined
 }
 
 

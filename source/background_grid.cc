@@ -126,6 +126,13 @@ namespace impm
   void
   BackgroundGrid<dim>::locate_nodes()
   {
+    smallest_extent = std::numeric_limits<double>::max();
+    for (const auto &cell : triangulation.active_cell_iterators())
+      if (cell->is_locally_owned())
+        for (unsigned int d = 0; d < dim; ++d)
+          smallest_extent = std::min(smallest_extent, cell_extent(cell, d));
+    smallest_extent = Utilities::MPI::min(smallest_extent, communicator);
+
     // Through a vector, for nodes that belong to no cell of this rank.
     Vector coordinates;
     initialize(coordinates);
@@ -185,18 +192,6 @@ namespace impm
     for (unsigned int n = 0; n < positions.size(); ++n)
       for (unsigned int d = 0; d < dim; ++d)
         positions[n][d] += u.local_element(dim * n + d);
-  }
-
-  template <int dim>
-  double
-  BackgroundGrid<dim>::smallest_cell_extent() const
-  {
-    double extent = std::numeric_limits<double>::max();
-    for (const auto &cell : triangulation.active_cell_iterators())
-      if (cell->is_locally_owned())
-        for (unsigned int d = 0; d < dim; ++d)
-          extent = std::min(extent, cell->extent_in_direction(d));
-    return Utilities::MPI::min(extent, communicator);
   }
 
   template <int dim>

@@ -125,8 +125,7 @@ namespace impm
         {
           result.reach[d] = std::numeric_limits<double>::max();
           for (const auto &other : result.cells)
-            result.reach[d] =
-              std::min(result.reach[d], other->extent_in_direction(d));
+            result.reach[d] = std::min(result.reach[d], cell_extent(other, d));
         }
       return result;
     }
@@ -175,7 +174,7 @@ namespace impm
       for (unsigned int d = 0; d < dim; ++d)
         {
           const double start  = cell->vertex(0)[d];
-          const double extent = cell->extent_in_direction(d);
+          const double extent = cell_extent(cell, d);
           const double from   = std::max(lower[d], start);
           const double to     = std::min(upper[d], start + extent);
           const double share  = (to - from) / (upper[d] - lower[d]);
@@ -212,7 +211,7 @@ namespace impm
               for (unsigned int d = 0; d < dim; ++d)
                 {
                   start[d] = cell->vertex(0)[d];
-                  end[d]   = start[d] + cell->extent_in_direction(d);
+                  end[d]   = start[d] + cell_extent(cell, d);
                 }
             }
           const auto half   = half_extents(points, p);

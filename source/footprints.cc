@@ -14,7 +14,7 @@ namespace impm
   {
     std::array<double, dim> extents;
     for (unsigned int d = 0; d < dim; ++d)
-      extents[d] = piece.cell->extent_in_direction(d);
+      extents[d] = cell_extent(piece.cell, d);
     for (unsigned int v = 0; v < n_nodes; ++v)
       {
         double                  value = piece.weight;
@@ -95,9 +95,9 @@ namespace impm
         if (slot == no_slot)
           {
             slot          = cells.size();
-            double extent = cell->extent_in_direction(0);
+            double extent = cell_extent(cell, 0);
             for (unsigned int d = 1; d < dim; ++d)
-              extent = std::min(extent, cell->extent_in_direction(d));
+              extent = std::min(extent, cell_extent(cell, d));
             cells.push_back({cell, grid.nodes_of(cell), 0, 0, extent});
           }
         ++cells[slot].end;

@@ -104,7 +104,7 @@ namespace impm
                 face.nodes[face.n_nodes++] = node;
             }
           const double weight = gamma * std::min(stiffness[i], stiffness[j]) *
-                                cell->extent_in_direction(f / 2);
+                                cell_extent(cell, f / 2);
           for (const unsigned int q : here.quadrature_point_indices())
             {
               std::array<double, max_nodes> jump{};

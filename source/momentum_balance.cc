@@ -133,7 +133,7 @@ namespace impm
       {
         double product = 1;
         for (unsigned int d = 0; d < dim; ++d)
-          product *= cell.cell->extent_in_direction(d);
+          product *= cell_extent(cell.cell, d);
         volume = std::min(volume, product);
       }
     return stiffness * Utilities::MPI::min(volume, grid.communicator);

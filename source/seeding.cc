@@ -44,7 +44,7 @@ namespace impm
               unsigned int index  = k;
               for (unsigned int d = 0; d < dim; ++d)
                 {
-                  const double extent   = cell->extent_in_direction(d);
+                  const double extent   = cell_extent(cell, d);
                   seed.domain[d]        = extent / n;
                   seed.unit_position[d] = (index % n + 0.5) / n;
                   seed.position[d] =
@@ -99,8 +99,7 @@ namespace impm
                 seed.volume =
                   values.JxW(q) * circumference(scene.geometry, seed.position);
                 for (unsigned int d = 0; d < dim; ++d)
-                  seed.domain[d] =
-                    cell->extent_in_direction(d) / body.points_per_cell;
+                  seed.domain[d] = cell_extent(cell, d) / body.points_per_cell;
                 seeds.push_back(seed);
               }
           }

@@ -128,8 +128,7 @@ namespace impm
         const auto cell = particle.get_surrounding_cell();
         for (unsigned int d = 0; d < dim; ++d)
           largest =
-            std::max(largest,
-                     std::abs(relative[d]) / cell->extent_in_direction(d));
+            std::max(largest, std::abs(relative[d]) / cell_extent(cell, d));
       }
     return Utilities::MPI::max(largest, balance.grid.communicator);
   }

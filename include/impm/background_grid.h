@@ -23,6 +23,15 @@ namespace impm
   /** Every field on the grid: dim values per node, those of a node together. */
   using Vector = dealii::LinearAlgebra::distributed::Vector<double>;
 
+  /** Length of a cell's edge along an axis (m); deal.II averages all edges. */
+  template <typename Cell>
+  double
+  cell_extent(const Cell &cell, const unsigned int direction)
+  {
+    const auto edge = cell->vertex(1u << direction) - cell->vertex(0);
+    return std::sqrt(edge * edge);
+  }
+
   /**
    * The grid of one step: a p4est forest of axis-aligned boxes with Q1
    * displacements. It carries nothing from one step to the next, unless it is
@@ -49,9 +58,12 @@ namespace impm
       return face % 2 == 0 ? lower_corner[face / 2] : upper_corner[face / 2];
     }
 
-    /** Smallest extent of any cell (m). Collective. */
+    /** Smallest extent of any cell (m). */
     double
-    smallest_cell_extent() const;
+    smallest_cell_extent() const
+    {
+      return smallest_extent;
+    }
 
     /** A vector of this grid, zero, with room for all locally relevant values.
      */
@@ -113,6 +125,7 @@ namespace impm
 
     dealii::Point<dim>              lower_corner, upper_corner;
     std::vector<dealii::Point<dim>> positions, initial_positions;
+    double                          smallest_extent;
     std::shared_ptr<const dealii::Utilities::MPI::Partitioner> partitioner;
   };
 } // namespace impm

@@ -16,27 +16,29 @@ namespace impm
   {
     constexpr unsigned int n = 5, h = n - 1;
     constexpr double       infinity = std::numeric_limits<double>::infinity();
-    const bool linearized = material.form() == Material::Form::linearized;
-    Matrix     space;
+    const auto             form     = material.form();
+    Matrix                 space;
 
     // Newton's method for the strain across: ln dF_33, or the linear one. The
-    // stress grows with it, so the points that it has seen bracket the root,
-    // and where a kink of the law would throw it out, the bracket is halved.
+    // stress that the law knows, tau or (by volume at t_n or as tau / J) sigma,
+    // grows with it, so what has been seen brackets the root, and where a
+    // kink would throw the iteration out, the bracket is halved.
     double strain = 0, last = infinity, lower = -infinity, upper = infinity;
     for (unsigned int iteration = 0;; ++iteration)
       {
         deformation.increment[2][2] =
-          linearized ? 1 + strain : std::exp(strain);
+          form == Material::Form::linearized ? 1 + strain : std::exp(strain);
         deformation.total = deformation.increment * start;
         ++n_evaluations;
         if (iteration == 60 ||
             !material.evaluate(
               deformation, history, trial_history, true, response))
           return false;
-        thick.spatial_tangent(response, material.form(), space.data());
+        thick.spatial_tangent(response, form, space.data());
         const double stress = response.kirchhoff_stress[2][2];
-        const double slope  = space[h * n + h] + (linearized ? 0. : stress);
-        const double step   = -stress / slope;
+        const double slope =
+          space[h * n + h] + (form == Material::Form::spatial ? stress : 0.);
+        const double step = -stress / slope;
         if (!(slope > 0) || !std::isfinite(step))
           return false;
         const double size = std::abs(step);

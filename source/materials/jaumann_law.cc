@@ -18,11 +18,12 @@ namespace impm
         !rate.measure(deformation.increment))
       return false;
 
-    const dealii::Tensor<2, 3> before = load_stress(history);
+    // half of the strain before the rotation, half behind it
+    const auto                 half   = 0.5 * elastic_stress(rate.strain);
+    const dealii::Tensor<2, 3> before = load_stress(history) + half;
     const auto to_end = before * dealii::transpose(rate.rotation);
-    const auto end = return_stress(dealii::symmetrize(rate.rotation * to_end) +
-                                     elastic_stress(rate.strain),
-                                   history);
+    const auto end =
+      return_stress(dealii::symmetrize(rate.rotation * to_end) + half, history);
     store(end, trial_history);
     response.kirchhoff_stress = J * end.stress;
     response.potential        = 0;
@@ -37,9 +38,13 @@ namespace impm
                                deformation.increment,
                                strain_change,
                                rotation_change);
+            const auto half_change = 0.5 * elastic_stress(strain_change);
+            const dealii::Tensor<2, 3> turned =
+              rotation_change * to_end + 0.5 * rate.rotation *
+                                           dealii::Tensor<2, 3>(half_change) *
+                                           dealii::transpose(rate.rotation);
             const dealii::SymmetricTensor<2, 3> change =
-              J * end.change(2. * dealii::symmetrize(rotation_change * to_end) +
-                             elastic_stress(strain_change));
+              J * end.change(2. * dealii::symmetrize(turned) + half_change);
             for (unsigned int i = 0; i < 3; ++i)
               for (unsigned int j = 0; j < 3; ++j)
                 response.full_tangent[i][j][k][l] =

@@ -30,11 +30,10 @@ namespace impm
       softening(0.01, 0.1, 0.01, 0.2);
     return {
       {"log-strain elastic",
-       std::make_shared<LogStrainElastic>(HenckyElasticity(unit_elasticity),
-                                          1.)},
+       std::make_shared<LogStrainElastic>(HenckyElasticity(1., 0.3), 1.)},
       {"log-strain von Mises",
        std::make_shared<LogStrainVonMises>(
-         HenckyElasticity(unit_elasticity), 1., 0.01, 0.1)},
+         HenckyElasticity(1., 0.3), 1., 0.01, 0.1)},
       {"neo-Hookean", std::make_shared<CoupledNeoHookean>(unit_elasticity, 1.)},
       {"decoupled neo-Hookean",
        std::make_shared<DecoupledNeoHookean>(unit_elasticity, 1.)},
@@ -82,6 +81,8 @@ namespace impm
     evaluate(const dealii::Tensor<2, 3> &increment)
     {
       trial_F = increment * F;
+      volume  = dealii::determinant(
+        law.form() == Material::Form::linearized ? F : trial_F);
       return law.evaluate({increment, trial_F, dt},
                           history.data(),
                           trial_history.data(),
@@ -99,7 +100,7 @@ namespace impm
     dealii::SymmetricTensor<2, 3>
     cauchy_stress() const
     {
-      return response.kirchhoff_stress / dealii::determinant(trial_F);
+      return response.kirchhoff_stress / volume;
     }
 
     double
@@ -113,6 +114,7 @@ namespace impm
     Material            &law;
     PointLayout          layout;
     double               dt;
+    double               volume = 1; ///< that the stress is over
     std::vector<double>  history, trial_history;
     dealii::Tensor<2, 3> F, trial_F;
     Material::Response   response;

@@ -224,7 +224,7 @@ TEST(PlaneStressMpi, PointsKeepTheirThickness)
       Model<2> model(block_scene("plane stress"), tension + method);
       for (unsigned int n = 0; n < 5; ++n)
         {
-          Vector u;
+          impm::Vector u;
           ASSERT_TRUE(model.solve(u).converged);
           model.commit(u);
           if (!model.grid.is_lagrangian)

@@ -245,18 +245,16 @@ TEST(LinearLaw, UniaxialTensionByHand)
       {
         LawPoint     point(law);
         const double axial = stress + alpha, side = -0.3 * stress - alpha / 2;
-        double       volume = 1;
         for (unsigned int i = 0; i < n; ++i)
           {
             ASSERT_TRUE(point.evaluate(
               diagonal(1 + axial / n, 1 + side / n, 1 + side / n)));
-            volume = determinant(point.F);
             point.commit();
           }
         auto expected  = SymmetricTensor<2, 3>();
-        expected[0][0] = volume * stress;
+        expected[0][0] = stress;
         EXPECT_NEAR(point.plastic_strain(), alpha, 1e-15);
-        EXPECT_LT((point.response.kirchhoff_stress - expected).norm(), 1e-15)
+        EXPECT_LT((point.cauchy_stress() - expected).norm(), 1e-14)
           << alpha << " in " << n;
         const auto energy = law.energy(point.F, point.history.data());
         EXPECT_NEAR(energy.stored,

@@ -10,11 +10,12 @@ namespace impm
    * d sigma / dt (Sulsky & Kaul 2004, sec. 2.2.4), by the midpoint rule of
    * Hughes & Winget:
    *
-   *   sigma = Q sigma_n Q^T + C : strain,   tau = J sigma,
+   *   sigma = Q (sigma_n + S/2) Q^T + S/2,   S = C : strain,   tau = J sigma,
    *
-   * returned to the yield stress if there is one. Objective, but hypoelastic:
-   * there is no energy that the stress derives from, stress oscillates in a
-   * large simple shear, and the tangent is not symmetric.
+   * returned to the yield stress if there is one. They add S at the end of the
+   * step, where its middle is meant, which is of first order only. Objective,
+   * but hypoelastic: there is no energy that the stress derives from, stress
+   * oscillates in a large simple shear, and the tangent is not symmetric.
    */
   class JaumannLaw final : public RateLaw
   {

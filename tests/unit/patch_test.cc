@@ -390,7 +390,10 @@ TEST(RigidRotationMpi, OfAStressedBody)
 {
   rotate<2>("plane strain", {"Stabilization/Ghost penalty=0.5"}, true);
   rotate<2>("plane strain", refined, true);
+  rotate<2>("plane strain", jaumann + refined, true);
+  rotate<2>("plane stress", refined, true);
   rotate<3>("3D", refined, true);
+  rotate<3>("3D", jaumann + refined, true);
 }
 
 

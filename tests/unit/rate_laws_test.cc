@@ -4,6 +4,7 @@
 
 #include "law_fixture.h"
 #include "material_fixture.h"
+#include "scene_fixture.h"
 
 using namespace dealii;
 using namespace impm;
@@ -304,4 +305,41 @@ TEST(NewtonianFluid, ShearAndCompression)
   EXPECT_NEAR(fluid.energy(other.F, other.history.data()).stored,
               K * (-0.1 - std::log(0.9)),
               1e-15);
+}
+
+
+// One solve is Newton's method; the matrix does not know where it is taken.
+TEST(LinearLawMpi, AnElasticStepIsALinearProblem)
+{
+  const Overrides shear = {"Materials/rubber/Law=linear elastic",
+                           "Boundary conditions/bottom/Type=fixed",
+                           "Boundary conditions/left/Type=normal displacement",
+                           "Boundary conditions/left/Value=0.05*t",
+                           "Grid/Upper corner=1.5, 1.5",
+                           "Grid/Cells=6, 6",
+                           "Loads/Body force=0.02; 0.01*y"};
+  for (const std::string kind :
+       {"plane strain", "plane stress", "axisymmetric"})
+    for (const auto &inertia : {Overrides(), with_inertia})
+      {
+        Model<2> model(block_scene(kind), shear + inertia);
+        for (unsigned int n = 0; n < 2; ++n)
+          {
+            impm::Vector u;
+            const auto   result = model.solve(u);
+            EXPECT_TRUE(result.converged) << kind << result.failure;
+            EXPECT_LE(result.iterations, 1u) << kind;
+
+            impm::Vector s = model.random_direction(3), Ks = model.vector(),
+                         Kt = model.vector();
+            model.balance.vmult(Ks, s);
+            ASSERT_TRUE(model.balance.evaluate(model.random_increment(4, 0.02))
+                          .admissible);
+            model.balance.vmult(Kt, s);
+            Kt -= Ks;
+            EXPECT_LT(Kt.l2_norm(), 1e-13 * Ks.l2_norm());
+            ASSERT_TRUE(model.balance.evaluate(u).admissible);
+            model.commit(u);
+          }
+      }
 }

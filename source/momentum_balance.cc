@@ -54,7 +54,7 @@ namespace impm
     this->dt   = dt;
     builder->build(points, grid, prints);
     populated.build(prints, points, grid);
-    response.begin_step(integrator.has_inertia() ? dt : 0.);
+    response.begin_step(dt);
     prints.make_patches(response.average.groups);
     gradient_increments.resize(points.size() * n_gradients);
     stress_increments.resize(points.size() * n_gradients);
@@ -143,8 +143,7 @@ namespace impm
   void
   MomentumBalance<dim>::gather_start_forces()
   {
-    double potential = 0;
-    if (!response.evaluate(false, potential))
+    if (!response.evaluate_start())
       throw ComputationError("a point has no stress at the start of a step");
     start_forces = 0;
     add_point_forces(response.stresses, start_forces);

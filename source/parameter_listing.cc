@@ -52,7 +52,7 @@ namespace impm
         path.substr(path.find('/') + 1, slash - path.find('/') - 1);
       if (path.rfind("Boundary conditions/", 0) == 0 && entry == "Type")
         return "velocity";
-      if (entry == "Constants from")
+      if (entry == "Constants from" || entry == "Limit strain")
         return "any";
       if (entry == "Law" || (entry == "Kind" && path.rfind("Bodies/", 0) != 0))
         return item;

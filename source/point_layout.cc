@@ -55,7 +55,7 @@ namespace impm
         case Kind::symmetric_tensor:
           return three_d ? 6 : 4;
         case Kind::tensor:
-          return three_d ? 9 : geometry == GeometryKind::axisymmetric ? 5 : 4;
+          return three_d ? 9 : geometry == GeometryKind::plane_strain ? 4 : 5;
       }
     return 0;
   }

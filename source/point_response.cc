@@ -3,6 +3,8 @@
 
 #include <impm/point_response.h>
 
+#include <utility>
+
 namespace impm
 {
   using namespace dealii;
@@ -13,7 +15,10 @@ namespace impm
     : kinematics(scene.geometry == GeometryKind::axisymmetric)
     , average(scene, points, kinematics)
     , points(points)
-  {}
+  {
+    if (scene.geometry == GeometryKind::plane_stress)
+      plane_stress.emplace();
+  }
 
   template <int dim>
   void
@@ -25,6 +30,7 @@ namespace impm
     stresses.resize(n * n_g);
     tangents.resize(n * n_g * n_g);
     histories.resize(n * points.history_size());
+    thickening.assign(plane_stress ? n : 0, 1.);
     average.begin_step();
   }
 
@@ -32,7 +38,9 @@ namespace impm
   Tensor<2, 3>
   PointResponse<dim>::increment(const unsigned int point) const
   {
-    const auto dF = kinematics.deformation(&gradients[point * kinematics.size]);
+    auto dF = kinematics.deformation(&gradients[point * kinematics.size]);
+    if (plane_stress)
+      dF[2][2] = thickening[point];
     return average.includes(point) ? average.average(point, dF) : dF;
   }
 
@@ -40,7 +48,7 @@ namespace impm
   bool
   PointResponse<dim>::evaluate(const bool with_tangent, double &potential)
   {
-    n_evaluations += points.size();
+    n_evaluations += plane_stress ? 0 : points.size();
     if (!average.measure(gradients))
       return false;
     const unsigned int               n_g = kinematics.size;
@@ -50,24 +58,42 @@ namespace impm
     deformation.dt = dt;
     for (unsigned int p = 0; p < points.size(); ++p)
       {
-        const double *fields = points.fields(p);
-        const auto    dF     = kinematics.deformation(&gradients[p * n_g]);
+        const auto   &law     = points.material(p);
+        const double *fields  = points.fields(p);
+        const double *history = fields + points.offset_history;
+        double       *trial   = &histories[p * points.history_size()];
+        const auto    start =
+          points.layout.load_tensor(fields + points.offset_deformation);
+        const auto dF = kinematics.deformation(&gradients[p * n_g]);
         deformation.increment =
           average.includes(p) ? average.average(p, dF) : dF;
-        deformation.total =
-          deformation.increment *
-          points.layout.load_tensor(fields + points.offset_deformation);
-        if (!points.material(p).evaluate(deformation,
-                                         fields + points.offset_history,
-                                         &histories[p * points.history_size()],
-                                         with_tangent,
-                                         response))
-          return false;
+        if (plane_stress)
+          {
+            if (!plane_stress->evaluate(law,
+                                        start,
+                                        history,
+                                        trial,
+                                        deformation,
+                                        response,
+                                        with_tangent ? spatial.data() :
+                                                       nullptr))
+              return false;
+            thickening[p] = deformation.increment[2][2];
+          }
+        else
+          {
+            deformation.total = deformation.increment * start;
+            if (!law.evaluate(
+                  deformation, history, trial, with_tangent, response))
+              return false;
+            if (with_tangent)
+              kinematics.spatial_tangent(response, law.form(), spatial.data());
+          }
         const double volume  = points.initial_volume(p);
-        const auto   inverse = invert(dF);
+        const auto   inverse = law.form() == Material::Form::linearized ?
+                                 Tensor<2, 3>(unit_symmetric_tensor<3>()) :
+                                 invert(dF);
         potential += volume * response.potential;
-        if (with_tangent)
-          kinematics.spatial_tangent(response, spatial.data());
         if (average.includes(p))
           average.take_out_pressure(p,
                                     volume,
@@ -85,7 +111,20 @@ namespace impm
                                         &tangents[p * n_g * n_g]);
       }
     average.share_pressure(gradients, with_tangent, stresses, tangents);
+    if (plane_stress)
+      n_evaluations += std::exchange(plane_stress->n_evaluations, 0);
     return true;
+  }
+
+  template <int dim>
+  bool
+  PointResponse<dim>::evaluate_start()
+  {
+    double       potential = 0;
+    const double length    = std::exchange(dt, 0.);
+    const bool   fine      = evaluate(false, potential);
+    dt                     = length;
+    return fine;
   }
 
   template <int dim>

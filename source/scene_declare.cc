@@ -78,8 +78,11 @@ namespace impm
       prm.enter_subsection("Geometry");
       prm.declare_entry("Kind",
                         "plane strain",
-                        Patterns::Selection("plane strain|axisymmetric|3D"),
+                        Patterns::Selection(
+                          "plane strain|plane stress|axisymmetric|3D"),
                         "Plane strain: x, y, forces per metre of thickness. "
+                        "Plane stress: the same of a sheet, per metre of its "
+                        "initial thickness, which is free to change. "
                         "Axisymmetric: r, z, forces of the whole circle.");
       prm.declare_entry("Shapes",
                         "",

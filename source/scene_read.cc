@@ -356,6 +356,31 @@ namespace impm
       return all.empty() ? "none" : all;
     }
 
+    /** What a law can be asked for. */
+    void
+    check_law(const Material    &material,
+              const std::string &law,
+              const GeometryKind geometry)
+    {
+      const bool plane_stress = geometry == GeometryKind::plane_stress;
+      if (plane_stress && !material.is_solid())
+        throw InputError("Law",
+                         "found '" + law +
+                           "', allowed in plane stress are laws of solids: "
+                           "nothing holds the thickness of a fluid");
+      if (!material.average_volume)
+        return;
+      if (plane_stress)
+        throw InputError("F-bar",
+                         "found 'true', allowed in plane stress is false: "
+                         "there the thickness keeps the volume, nothing locks");
+      if (material.form() != Material::Form::spatial)
+        throw InputError("F-bar",
+                         "found 'true', allowed with the law '" + law +
+                           "' is false: the average is a derivative of the "
+                           "energy of F, which this law does not have");
+    }
+
     /** What no single section can tell. */
     template <int dim>
     void
@@ -392,6 +417,15 @@ namespace impm
           scene.grid.lower_corner[0] < 0)
         throw InputError("Grid/Lower corner",
                          "found a negative radius, allowed is r >= 0");
+
+      for (const auto &body : scene.bodies)
+        if (!body.rigid && scene.solver.linear_solver == "CG" &&
+            !body.material->has_symmetric_tangent())
+          throw InputError("Solver/Linear solver",
+                           "found 'CG', which needs a symmetric matrix, but "
+                           "the law of body '" +
+                             body.name +
+                             "' has none: allowed are GMRES, direct");
 
       unsigned int movers = 0;
       for (unsigned int f = 0; f < 2 * dim; ++f)
@@ -464,6 +498,7 @@ namespace impm
       const std::string kind = prm.get("Kind");
       scene.geometry         = kind == "3D"           ? GeometryKind::three_d :
                                kind == "axisymmetric" ? GeometryKind::axisymmetric :
+                               kind == "plane stress" ? GeometryKind::plane_stress :
                                                         GeometryKind::plane_strain;
       for (const auto &name : split_names(prm.get("Shapes")))
         in_section(prm, name, [&]() {
@@ -486,6 +521,7 @@ namespace impm
             if (entry.name == prm.get("Law"))
               materials[name] = entry.create(prm);
           materials[name]->average_volume = prm.get_bool("F-bar");
+          check_law(*materials[name], prm.get("Law"), scene.geometry);
         });
     });
     in_section(prm, "Time", [&]() { scene.time = read_time(prm, lagrangian); });

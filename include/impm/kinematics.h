@@ -68,28 +68,35 @@ namespace impm
         result[dim * dim] = factor * stress[2][2] * inverse[2][2];
     }
 
-    /** c_ijkl + delta_ik tau_jl: the material's and the geometric stiffness. */
+    /**
+     * The material's and the geometric stiffness: how tau L^-T, L = 1 + g,
+     * changes with g. c_ijkl + delta_ik tau_jl, the same from the full
+     * tangent as a_ijkl - tau_il delta_jk, and c_ijkl alone if linearized.
+     */
     void
-    spatial_tangent(const Material::Response &response, double *matrix) const
+    spatial_tangent(const Material::Response &response,
+                    const Material::Form      form,
+                    double                   *matrix) const
     {
       const auto &c   = response.tangent;
+      const auto &a   = response.full_tangent;
       const auto &tau = response.kirchhoff_stress;
-      for (unsigned int i = 0; i < dim; ++i)
-        for (unsigned int j = 0; j < dim; ++j)
-          for (unsigned int k = 0; k < dim; ++k)
-            for (unsigned int l = 0; l < dim; ++l)
-              matrix[(dim * i + j) * size + dim * k + l] =
-                c[i][j][k][l] + (i == k ? tau[j][l] : 0.);
-      if (!axisymmetric)
-        return;
-      const unsigned int h = dim * dim;
-      matrix[h * size + h] = c[2][2][2][2] + tau[2][2];
-      for (unsigned int i = 0; i < dim; ++i)
-        for (unsigned int j = 0; j < dim; ++j)
-          {
-            matrix[(dim * i + j) * size + h] = c[i][j][2][2];
-            matrix[h * size + dim * i + j]   = c[2][2][i][j];
-          }
+      switch (form)
+        {
+          case Material::Form::spatial:
+            fill(matrix, [&](auto i, auto j, auto k, auto l) {
+              return c[i][j][k][l] + (i == k ? tau[j][l] : 0.);
+            });
+            break;
+          case Material::Form::full:
+            fill(matrix, [&](auto i, auto j, auto k, auto l) {
+              return a[i][j][k][l] - (j == k ? tau[i][l] : 0.);
+            });
+            break;
+          case Material::Form::linearized:
+            fill(matrix,
+                 [&](auto i, auto j, auto k, auto l) { return c[i][j][k][l]; });
+        }
     }
 
     /** factor * L^T matrix L, where L carries a gradient on: g inverse. */
@@ -157,6 +164,29 @@ namespace impm
           }
       if (axisymmetric)
         result[dim * dim] = factor * vector[dim * dim] * inverse[2][2];
+    }
+
+  private:
+    /** The matrix with the values of entry(i, j, k, l). */
+    template <typename Entry>
+    void
+    fill(double *matrix, const Entry &entry) const
+    {
+      for (unsigned int i = 0; i < dim; ++i)
+        for (unsigned int j = 0; j < dim; ++j)
+          for (unsigned int k = 0; k < dim; ++k)
+            for (unsigned int l = 0; l < dim; ++l)
+              matrix[(dim * i + j) * size + dim * k + l] = entry(i, j, k, l);
+      if (!axisymmetric)
+        return;
+      const unsigned int h = dim * dim;
+      matrix[h * size + h] = entry(2u, 2u, 2u, 2u);
+      for (unsigned int i = 0; i < dim; ++i)
+        for (unsigned int j = 0; j < dim; ++j)
+          {
+            matrix[(dim * i + j) * size + h] = entry(i, j, 2u, 2u);
+            matrix[h * size + dim * i + j]   = entry(2u, 2u, i, j);
+          }
     }
   };
 } // namespace impm

@@ -13,6 +13,7 @@ namespace impm
   enum class GeometryKind
   {
     plane_strain, ///< (x, y), forces per unit thickness
+    plane_stress, ///< (x, y), forces per unit initial thickness
     axisymmetric, ///< (r, z), forces of the whole circle
     three_d       ///< (x, y, z)
   };
@@ -24,9 +25,9 @@ namespace impm
    * Tensors are 3 x 3 wherever physics happens and are stored without the
    * components that the geometry makes constant:
    *
-   *   tensor            2D: xx xy yx yy, then zz when axisymmetric; 3D: 9, by
-   *                     rows. The missing zz of plane strain reads as 1: the
-   *                     only unsymmetric tensor that points carry is a
+   *   tensor            2D: xx xy yx yy, then zz but for plane strain; 3D: 9,
+   *                     by rows. The missing zz of plane strain reads as 1:
+   *                     the only unsymmetric tensor that points carry is a
    *                     deformation gradient.
    *   symmetric_tensor  2D: xx yy xy zz; 3D: xx yy zz xy xz yz.
    */
@@ -120,7 +121,7 @@ namespace impm
         t[0][1] = values[1];
         t[1][0] = values[2];
         t[1][1] = values[3];
-        t[2][2] = geometry == GeometryKind::axisymmetric ? values[4] : 1.;
+        t[2][2] = geometry == GeometryKind::plane_strain ? 1. : values[4];
       }
     return t;
   }
@@ -140,7 +141,7 @@ namespace impm
         values[1] = t[0][1];
         values[2] = t[1][0];
         values[3] = t[1][1];
-        if (geometry == GeometryKind::axisymmetric)
+        if (geometry != GeometryKind::plane_strain)
           values[4] = t[2][2];
       }
   }

@@ -3,8 +3,10 @@
 
 #include <impm/kinematics.h>
 #include <impm/material_points.h>
+#include <impm/plane_stress.h>
 #include <impm/volume_average.h>
 
+#include <optional>
 #include <vector>
 
 namespace impm
@@ -20,7 +22,7 @@ namespace impm
   public:
     PointResponse(const Scene<dim> &scene, const MaterialPoints<dim> &points);
 
-    /** For a step of length dt; 0 if static. The gradients become zero. */
+    /** For a step of length dt (s). The gradients become zero. */
     void
     begin_step(double dt);
 
@@ -30,6 +32,13 @@ namespace impm
      */
     bool
     evaluate(bool with_tangent, double &potential);
+
+    /**
+     * Gives `stresses` those of the state at the start, whatever the length
+     * of the step; the gradients are zero. Returns false as evaluate() does.
+     */
+    bool
+    evaluate_start();
 
     /** stress_changes = tangent times gradient_changes. */
     void
@@ -51,7 +60,8 @@ namespace impm
 
     /**
      * The deformation over the step that the law has seen: dF, with the
-     * average change of volume where the law asks for it.
+     * average change of volume where the law asks for it, and with the
+     * thickness that plane stress takes.
      */
     dealii::Tensor<2, 3>
     increment(unsigned int point) const;
@@ -74,8 +84,10 @@ namespace impm
 
   private:
     const MaterialPoints<dim> &points;
+    std::optional<PlaneStress> plane_stress;
     double                     dt = 0;
     std::vector<double>        tangents, histories;
+    std::vector<double>        thickening; ///< dF_33 in plane stress
   };
 } // namespace impm
 

@@ -1,5 +1,3 @@
-#include <deal.II/base/patterns.h>
-
 #include <deal.II/physics/elasticity/kinematics.h>
 
 #include <impm/materials/log_strain_elastic.h>
@@ -27,10 +25,7 @@ namespace impm
   LogStrainElastic::declare_parameters(dealii::ParameterHandler &prm)
   {
     HenckyElasticity::declare_parameters(prm);
-    prm.declare_entry("Density",
-                      "1000",
-                      dealii::Patterns::Double(1e-300),
-                      "Density before any deformation (kg/m^3), positive.");
+    declare_density(prm);
   }
 
 

@@ -1,4 +1,4 @@
-#include <deal.II/base/patterns.h>
+#include <deal.II/base/parameter_handler.h>
 
 #include <impm/materials/neo_hookean.h>
 
@@ -9,15 +9,6 @@ namespace impm
 {
   namespace
   {
-    void
-    declare_density(dealii::ParameterHandler &prm)
-    {
-      prm.declare_entry("Density",
-                        "1000",
-                        dealii::Patterns::Double(1e-300),
-                        "Density before any deformation (kg/m^3), positive.");
-    }
-
     /** volumetric 1 x 1 + shear times the symmetric identity. */
     dealii::SymmetricTensor<4, 3>
     isotropic_tensor(const double volumetric, const double shear)

@@ -156,6 +156,18 @@ TEST(ParallelMpi, LocallyRefinedGrid)
 }
 
 
+TEST(ParallelMpi, RateLawsAndPlaneStress)
+{
+  compare<2>(upsetting(),
+             platen_is_a_face + split +
+               Overrides{"Materials/steel/Law=Jaumann von Mises"});
+  compare<2>(upsetting(),
+             platen_is_a_face + split +
+               Overrides{"Materials/steel/Law=linear von Mises",
+                         "Geometry/Kind=plane stress"});
+}
+
+
 TEST(ParallelMpi, Boxes)
 {
   compare<2>(upsetting(),

@@ -84,6 +84,7 @@ namespace impm
       Geometries,
       PointLayoutOf,
       testing::Values(Expected{GeometryKind::plane_strain, 2, 4, 4},
+                      Expected{GeometryKind::plane_stress, 2, 4, 5},
                       Expected{GeometryKind::axisymmetric, 2, 4, 5},
                       Expected{GeometryKind::three_d, 3, 6, 9}));
 

@@ -115,6 +115,21 @@ namespace impm
            "end\n";
   }
 
+  /** The same block of a fluid that resists shear with viscosity only. */
+  inline std::string
+  fluid_scene(const std::string &kind)
+  {
+    std::string text = block_scene(kind);
+    const auto  from = text.find("    set Law"), to = text.find("  end", from);
+    return text.replace(from,
+                        to - from,
+                        "    set Law              = Newtonian fluid\n"
+                        "    set Density          = 1\n"
+                        "    set Bulk modulus     = 1\n"
+                        "    set Viscosity        = 0.3\n"
+                        "    set Second viscosity = 0.1\n");
+  }
+
   inline const Overrides plastic = {"Materials/rubber/Law=log-strain von Mises",
                                     "Materials/rubber/Yield stress=0.02",
                                     "Materials/rubber/Hardening modulus=0.1"};

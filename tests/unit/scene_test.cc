@@ -143,6 +143,47 @@ TEST(Scene, ValuesThatCannotBe)
 }
 
 
+TEST(Scene, LawsThatDoNotFit)
+{
+  const Overrides jaumann = {"Materials/rubber/Law=Jaumann elastic"};
+  expect_blame(jaumann + Overrides{"Solver/Linear solver=CG"},
+               "Solver/Linear solver",
+               {"'CG'", "symmetric", "'block'", "GMRES"});
+  const Overrides f_bar = {"Materials/rubber/F-bar=true"};
+  for (const std::string law : {"Jaumann elastic", "linear elastic"})
+    expect_blame(f_bar + Overrides{"Materials/rubber/Law=" + law},
+                 "Materials/rubber/F-bar",
+                 {"'true'", law, "energy"});
+  expect_blame(f_bar + Overrides{"Geometry/Kind=plane stress"},
+               "Materials/rubber/F-bar",
+               {"'true'", "plane stress"});
+  const Overrides softening = {"Materials/rubber/Law=linear von Mises",
+                               "Materials/rubber/Yield stress=0.01",
+                               "Materials/rubber/Limit strain=0.1"};
+  expect_blame(softening + Overrides{"Materials/rubber/Softening modulus=2"},
+               "Materials/rubber/Softening modulus",
+               {"'2'", "shear"});
+  EXPECT_NO_THROW(scene_from<2>(
+    plane, softening + Overrides{"Materials/rubber/Softening modulus=1"}));
+  const auto blame = [](const Overrides &overrides) -> std::string {
+    try
+      {
+        scene_from<2>(fluid_scene("plane strain"), overrides);
+        return "";
+      }
+    catch (const InputError &error)
+      {
+        return error.entry;
+      }
+  };
+  EXPECT_EQ(blame({}), "");
+  EXPECT_EQ(blame({"Geometry/Kind=plane stress"}), "Materials/rubber/Law");
+  EXPECT_EQ(blame({"Materials/rubber/Second viscosity=-0.3"}),
+            "Materials/rubber/Second viscosity");
+  EXPECT_EQ(blame({"Solver/Linear solver=CG"}), "Solver/Linear solver");
+}
+
+
 TEST(Scene, IsWhatTheFileSays)
 {
   const auto scene = scene_from<2>(

@@ -6,6 +6,11 @@
 
 #include <impm/point_layout.h>
 
+namespace dealii
+{
+  class ParameterHandler;
+}
+
 namespace impm
 {
   /**
@@ -25,20 +30,36 @@ namespace impm
     {
       dealii::Tensor<2, 3> increment; ///< dF: from t_n to t_{n+1}
       dealii::Tensor<2, 3> total;     ///< F at t_{n+1} = dF F_n
-      double               dt;        ///< length of the step; 0 if static
+      /**
+       * Length of the step (s). With 0 and no increment the stress is that of
+       * the state at t_n, whatever came before it.
+       */
+      double dt;
+    };
+
+    /** What a law takes the step for, and with it what its tangent is. */
+    enum class Form
+    {
+      spatial,   ///< finite; c of the Lie derivative, symmetric in ij and in kl
+      full,      ///< finite; a_ijkl, with what the spin of the step does
+      linearized ///< small strains about t_n, where forces act, too
     };
 
     struct Response
     {
-      /** tau = J sigma, per initial volume (Pa). */
+      /** tau = J sigma, per initial volume (Pa); linearized: J_n sigma. */
       dealii::SymmetricTensor<2, 3> kirchhoff_stress;
 
       /**
        * c with (Lie derivative of tau) = c : d, that is
        * d tau_ij / dF_km F_lm = c_ijkl + delta_ik tau_jl + tau_il delta_jk
-       * (symmetrized over k, l). Filled only when asked for. Units Pa.
+       * (symmetrized over k, l). Linearized: d (J_n sigma_ij) / d strain_kl.
+       * Filled only when asked for. Units Pa.
        */
       dealii::SymmetricTensor<4, 3> tangent;
+
+      /** a_ijkl = d tau_ij / d dF_km dF_lm (Pa), in its place when full. */
+      dealii::Tensor<4, 3> full_tangent;
 
       /**
        * Incremental potential per initial volume (J/m^3), up to a constant of
@@ -90,13 +111,40 @@ namespace impm
     energy(const dealii::Tensor<2, 3> &deformation_gradient,
            const double               *history) const = 0;
 
-    /** Young's modulus (Pa): scale of residuals and of the ghost penalty. */
+    /**
+     * Young's modulus (Pa), or what comes next to it in a fluid: scale of
+     * residuals and of the ghost penalty.
+     */
     virtual double
     stiffness() const = 0;
 
     /** Speed of longitudinal elastic waves (m/s). */
     virtual double
     wave_speed() const = 0;
+
+    virtual Form
+    form() const
+    {
+      return Form::spatial;
+    }
+
+    /** Whether the tangent of the forces is symmetric. */
+    virtual bool
+    has_symmetric_tangent() const
+    {
+      return form() != Form::full;
+    }
+
+    /** Whether it resists being stretched without a change of volume. */
+    virtual bool
+    is_solid() const
+    {
+      return true;
+    }
+
+    /** Declares the entry of the density, for the laws. */
+    static void
+    declare_density(dealii::ParameterHandler &prm);
 
     /** Whether the stress derives from Response::potential. */
     virtual bool

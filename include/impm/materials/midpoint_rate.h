@@ -1,0 +1,65 @@
+#ifndef impm_materials_midpoint_rate_h
+#define impm_materials_midpoint_rate_h
+
+#include <deal.II/base/symmetric_tensor.h>
+#include <deal.II/base/tensor.h>
+
+namespace impm
+{
+  /**
+   * Strain and spin of a step by the midpoint rule of Hughes & Winget (IJNME
+   * 15, 1980, 1862-1867): the gradient of the increment by the places half
+   * way,
+   *
+   *   h = g (1 + g/2)^-1, g = dF - 1,   strain = sym h,   w = skew h,
+   *   Q = (1 - w/2)^-1 (1 + w/2).
+   *
+   * A rigid rotation has no strain and is Q itself.
+   */
+  struct MidpointRate
+  {
+    /** Returns false when the step has no middle. */
+    bool
+    measure(const dealii::Tensor<2, 3> &increment)
+    {
+      const dealii::Tensor<2, 3> unit = dealii::unit_symmetric_tensor<3>();
+      const auto                 g    = increment - unit;
+      const auto                 half = unit + 0.5 * g;
+      if (!(dealii::determinant(half) > 0))
+        return false;
+      inverse      = dealii::invert(half);
+      const auto h = g * inverse;
+      const auto w = skew(h);
+      strain       = dealii::symmetrize(h);
+      spin_inverse = dealii::invert(unit - 0.5 * w);
+      rotation     = spin_inverse * (unit + 0.5 * w);
+      return true;
+    }
+
+    /** d strain with a change L dF of dF, and that of Q. */
+    void
+    differentiate(const dealii::Tensor<2, 3>    &L,
+                  const dealii::Tensor<2, 3>    &increment,
+                  dealii::SymmetricTensor<2, 3> &strain_change,
+                  dealii::Tensor<2, 3>          &rotation_change) const
+    {
+      const auto h_change = inverse * L * increment * inverse;
+      strain_change       = dealii::symmetrize(h_change);
+      rotation_change     = spin_inverse * skew(h_change) * spin_inverse;
+    }
+
+    dealii::SymmetricTensor<2, 3> strain;
+    dealii::Tensor<2, 3>          rotation;
+
+  private:
+    static dealii::Tensor<2, 3>
+    skew(const dealii::Tensor<2, 3> &t)
+    {
+      return 0.5 * (t - dealii::transpose(t));
+    }
+
+    dealii::Tensor<2, 3> inverse, spin_inverse;
+  };
+} // namespace impm
+
+#endif

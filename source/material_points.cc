@@ -128,6 +128,8 @@ namespace impm
       layout.add("velocity", Kind::vector);
     if (scene.time.keeps_acceleration)
       layout.add("acceleration", Kind::vector);
+    if (scene.keeps_stress())
+      layout.add("stress", Kind::symmetric_tensor);
     if (scene.has_inertia() && scene.time.transfer == TransferKind::apic)
       for (unsigned int d = 0; d < dim; ++d)
         layout.add(std::string("velocity_gradient_") + "xyz"[d], Kind::vector);
@@ -158,6 +160,7 @@ namespace impm
     , offset_velocity(offset_or_zero(layout, "velocity"))
     , offset_acceleration(offset_or_zero(layout, "acceleration"))
     , offset_affine(offset_or_zero(layout, "velocity_gradient_x"))
+    , offset_stress(offset_or_zero(layout, "stress"))
     , offset_initial_position(offset_or_zero(layout, "initial_position"))
     , history_layout(history_of(scene))
     , communicator(grid.communicator)

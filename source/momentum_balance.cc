@@ -110,9 +110,10 @@ namespace impm
         }
     work.compress(VectorOperation::add);
     constraints.condense_hanging(work);
-    force_scale = scene.solver.residual_scale == ResidualScale::body ?
-                    work.l2_norm() :
-                    force_of_cell();
+    force_scale =
+      scene.solver.residual_scale == ResidualScale::body ? work.l2_norm() :
+      scene.solver.residual_scale == ResidualScale::cell ? force_of_cell() :
+                                                           1 / dt;
     work.update_ghost_values();
     constraints.build(time, dt, work);
     n_active_dofs = 0;

@@ -15,6 +15,9 @@ namespace impm
     : kinematics(scene.geometry == GeometryKind::axisymmetric)
     , average(scene, points, kinematics)
     , points(points)
+    , n_stress(scene.keeps_stress() ? points.layout.n_components(
+                                        PointLayout::Kind::symmetric_tensor) :
+                                      0)
   {
     if (scene.geometry == GeometryKind::plane_stress)
       plane_stress.emplace();
@@ -30,6 +33,7 @@ namespace impm
     stresses.resize(n * n_g);
     tangents.resize(n * n_g * n_g);
     histories.resize(n * points.history_size());
+    end_stresses.resize(n * n_stress);
     thickening.assign(plane_stress ? n : 0, 1.);
     average.begin_step();
   }
@@ -94,6 +98,15 @@ namespace impm
                                  Tensor<2, 3>(unit_symmetric_tensor<3>()) :
                                  invert(dF);
         potential += volume * response.potential;
+        if (n_stress > 0)
+          {
+            // that of a linearized law counts from the volume at the start
+            const double growth = law.form() == Material::Form::linearized ?
+                                    determinant(deformation.increment) :
+                                    1.;
+            points.layout.store_symmetric(growth * response.kirchhoff_stress,
+                                          &end_stresses[p * n_stress]);
+          }
         if (average.includes(p))
           average.take_out_pressure(p,
                                     volume,
@@ -120,6 +133,18 @@ namespace impm
   bool
   PointResponse<dim>::evaluate_start()
   {
+    if (n_stress > 0)
+      {
+        const Tensor<2, 3> unit = unit_symmetric_tensor<3>();
+        for (unsigned int p = 0; p < points.size(); ++p)
+          kinematics.carry_back_stress(points.layout.load_symmetric(
+                                         points.fields(p) +
+                                         points.offset_stress),
+                                       unit,
+                                       points.initial_volume(p),
+                                       &stresses[p * kinematics.size]);
+        return true;
+      }
     double       potential = 0;
     const double length    = std::exchange(dt, 0.);
     const bool   fine      = evaluate(false, potential);

@@ -414,11 +414,13 @@ namespace impm
         }
       prm.declare_entry("Residual scale",
                         "body",
-                        Patterns::Selection("body|cell"),
+                        Patterns::Selection("body|cell|momentum"),
                         "Unit of the norm of residuals. Body: that of the "
                         "forces of all material at a strain of one. Cell: "
                         "largest Young's modulus times dx dy (dz) of the "
-                        "smallest cell (Sulsky & Kaul 2004, section 3.2.2).");
+                        "smallest cell (Sulsky & Kaul 2004, section 3.2.2). "
+                        "Momentum: force times time step in N s (their section "
+                        "3.1).");
       prm.declare_entry("Newton tolerance",
                         "1e-7",
                         Patterns::Double(tiny, 1),

@@ -250,10 +250,11 @@ namespace impm
     SolverSpec
     read_solver(const ParameterHandler &prm, const TimeSpec &time)
     {
-      SolverSpec solver;
-      solver.residual_scale    = prm.get("Residual scale") == "cell" ?
-                                   ResidualScale::cell :
-                                   ResidualScale::body;
+      SolverSpec        solver;
+      const std::string scale  = prm.get("Residual scale");
+      solver.residual_scale    = scale == "body" ? ResidualScale::body :
+                                 scale == "cell" ? ResidualScale::cell :
+                                                   ResidualScale::momentum;
       solver.newton_tolerance  = prm.get_double("Newton tolerance");
       solver.newton_reduction  = prm.get_double("Newton reduction");
       solver.newton_iterations = prm.get_integer("Newton iterations");

@@ -93,6 +93,11 @@ namespace impm
         points.layout.store_tensor(balance.response.increment(p) *
                                      points.layout.load_tensor(deformation),
                                    deformation);
+        if (points.offset_stress > 0)
+          std::copy_n(balance.response.end_stress(p),
+                      points.layout.n_components(
+                        PointLayout::Kind::symmetric_tensor),
+                      fields + points.offset_stress);
         std::copy_n(balance.response.trial_history(p),
                     points.history_size(),
                     fields + points.offset_history);

@@ -143,9 +143,9 @@ namespace impm
     SortedParticles<dim> sorted;
     const unsigned int   offset_deformation, offset_history;
     // 0 where the points have none of it. The affine velocity is a matrix by
-    // rows, d v_i / d x_j.
+    // rows, d v_i / d x_j; the stress is what the force at t_n comes from, tau.
     const unsigned int offset_velocity, offset_acceleration, offset_affine,
-      offset_initial_position;
+      offset_stress, offset_initial_position;
     /** Within the history: offsets count from offset_history. */
     const PointLayout history_layout;
     const MPI_Comm    communicator;

@@ -72,6 +72,14 @@ namespace impm
       return &histories[point * points.history_size()];
     }
 
+    /** tau at the end of the step (Pa), as points that carry stress store it.
+     */
+    const double *
+    end_stress(const unsigned int point) const
+    {
+      return &end_stresses[point * n_stress];
+    }
+
     /** Sum over the points of the squares of their stresses (N m)^2. */
     double
     square_of_stresses() const;
@@ -86,7 +94,8 @@ namespace impm
     const MaterialPoints<dim> &points;
     std::optional<PlaneStress> plane_stress;
     double                     dt = 0;
-    std::vector<double>        tangents, histories;
+    std::vector<double>        tangents, histories, end_stresses;
+    const unsigned int         n_stress;   ///< values of a stress, if carried
     std::vector<double>        thickening; ///< dF_33 in plane stress
   };
 } // namespace impm

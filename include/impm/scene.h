@@ -10,6 +10,7 @@
 #include <impm/reference_spec.h>
 #include <impm/shapes.h>
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <memory>
@@ -133,8 +134,9 @@ namespace impm
   /** What a residual is measured in. */
   enum class ResidualScale
   {
-    body, ///< norm of the forces of all material at a strain of one
-    cell  ///< Young's modulus times the size of a cell
+    body,    ///< norm of the forces of all material at a strain of one
+    cell,    ///< Young's modulus times the size of a cell
+    momentum ///< 1 N over the time step: none
   };
 
   /** How the tangent is applied. */
@@ -209,6 +211,19 @@ namespace impm
 
     /** What the file names to no effect. */
     std::vector<std::string> warnings;
+
+    /**
+     * Whether points carry their stress to the next step: explicit forces need
+     * nothing else of the laws. Averages of volume change with the cells.
+     */
+    bool
+    keeps_stress() const
+    {
+      return time.integrator == "explicit" &&
+             std::none_of(bodies.begin(), bodies.end(), [](const auto &body) {
+               return body.material && body.material->average_volume;
+             });
+    }
 
     /** Without inertia there is no velocity. */
     bool

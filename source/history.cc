@@ -9,6 +9,20 @@ namespace impm
 {
   using namespace dealii;
 
+  void
+  StepReport::append(const StepReport &next)
+  {
+    const auto before = *this;
+    *this             = next;
+    newton_iterations += before.newton_iterations;
+    linear_iterations += before.linear_iterations;
+    line_searches += before.line_searches;
+    step_cuts += before.step_cuts;
+    projections += before.projections;
+    solver_fallbacks += before.solver_fallbacks;
+    noise_stops += before.noise_stops;
+  }
+
   template <int dim>
   Totals<dim>
   total(const MaterialPoints<dim> &points)
@@ -118,8 +132,11 @@ namespace impm
             if (!follower.field)
               throw InputError(entry,
                                "found '" + probe.field +
-                                 "', which the points of this scene do not "
-                                 "have");
+                                 (probe.field == "temperature" ?
+                                    "', which needs a 'Specific heat' of "
+                                    "every material" :
+                                    "', which the points of this scene do "
+                                    "not have"));
             if (probe.component >= follower.field->n_components)
               throw InputError("Output/" + probe.name + "/Component",
                                "found " + std::to_string(probe.component) +

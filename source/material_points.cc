@@ -2,6 +2,7 @@
 
 #include <impm/exceptions.h>
 #include <impm/material_points.h>
+#include <impm/point_traction.h>
 #include <impm/seeding.h>
 
 #include <algorithm>
@@ -133,7 +134,10 @@ namespace impm
     if (scene.has_inertia() && scene.time.transfer == TransferKind::apic)
       for (unsigned int d = 0; d < dim; ++d)
         layout.add(std::string("velocity_gradient_") + "xyz"[d], Kind::vector);
-    if (wants_initial_position || scene.body_force_is_initial)
+    if (wants_initial_position || scene.body_force_is_initial ||
+        std::any_of(scene.tractions.begin(),
+                    scene.tractions.end(),
+                    [](const auto &traction) { return traction.is_initial; }))
       layout.add("initial_position", Kind::vector);
     if (scene.grid.method == GridMethod::gimp ||
         std::any_of(output.probes.begin(),
@@ -142,6 +146,9 @@ namespace impm
                       return probe.kind == ProbeSpec::Kind::extent;
                     }))
       layout.add("initial_domain", Kind::vector);
+
+    for (const auto &traction : scene.tractions)
+      layout.add(traction_field(traction), Kind::scalar);
 
     // The history comes last, in one block.
     const PointLayout history = history_of(scene);
@@ -209,10 +216,26 @@ namespace impm
                 if (layout.has("initial_domain"))
                   values[layout.offset("initial_domain") + d] = seed.domain[d];
               }
+            for (const auto &traction : scene.tractions)
+              if (traction.body == body.name)
+                values[layout.offset(traction_field(traction))] =
+                  traction_area(traction, seed);
             body.material->initialize_history(values + offset_history);
           });
       }
     sort();
+    check_tractions(scene, *this);
+  }
+
+  template <int dim>
+  bool
+  MaterialPoints<dim>::have_temperature() const
+  {
+    return std::all_of(materials.begin(),
+                       materials.end(),
+                       [](const auto &material) {
+                         return !material || material->specific_heat > 0;
+                       });
   }
 
   template <int dim>

@@ -3,6 +3,7 @@
 #include <impm/grid_motion.h>
 #include <impm/isolated_cells.h>
 #include <impm/momentum_balance.h>
+#include <impm/point_traction.h>
 
 #include <cmath>
 
@@ -291,6 +292,7 @@ namespace impm
     load = 0;
     if (scene.body_force)
       add_body_force(instant, load);
+    add_point_tractions(scene, points, prints, instant, -1., load);
     if (grid.is_lagrangian)
       add_face_tractions(scene, grid, instant, -1., load);
     load.compress(VectorOperation::add);

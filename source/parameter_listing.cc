@@ -37,6 +37,8 @@ namespace impm
         {"Bodies/Names", "deformable,rigid,from file"},
         {"Bodies/rigid/Kind", "rigid"},
         {"Bodies/from file/Points from", "file"},
+        {"Loads/Body force", "any"},
+        {"Loads/Tractions", "traction"},
         {"Time/Integrator", "any"},
         {"Solver/Linear solver", "GMRES"},
         {"Output/Probes", "point,largest,extent,motion"},
@@ -52,7 +54,8 @@ namespace impm
         path.substr(path.find('/') + 1, slash - path.find('/') - 1);
       if (path.rfind("Boundary conditions/", 0) == 0 && entry == "Type")
         return "velocity";
-      if (entry == "Constants from" || entry == "Limit strain")
+      if (entry == "Constants from" || entry == "Limit strain" ||
+          entry == "Specific heat")
         return "any";
       if (entry == "Law" || (entry == "Kind" && path.rfind("Bodies/", 0) != 0))
         return item;

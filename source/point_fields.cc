@@ -19,7 +19,9 @@ namespace impm
                                                    "equivalent_plastic_strain",
                                                    "deformation_gradient",
                                                    "volume",
-                                                   "body"};
+                                                   "body",
+                                                   "temperature",
+                                                   "internal_energy"};
     return names;
   }
 
@@ -141,6 +143,30 @@ namespace impm
         }};
     if (name == "body")
       return Field{name, 1, stored_scalar(name)};
+    const auto energy = [&points](const unsigned int p) {
+      return points.material(p).energy(deformation_gradient(points, p),
+                                       points.fields(p) +
+                                         points.offset_history);
+    };
+    if (name == "temperature" && points.have_temperature())
+      return Field{
+        name,
+        1,
+        [&points, energy](unsigned int p, const Point<dim> &, double *values) {
+          const auto &material = points.material(p);
+          values[0] =
+            material.initial_temperature +
+            energy(p).dissipated / (material.density * material.specific_heat);
+        }};
+    if (name == "internal_energy")
+      return Field{
+        name,
+        1,
+        [&points, energy](unsigned int p, const Point<dim> &, double *values) {
+          const auto now = energy(p);
+          values[0] =
+            (now.stored + now.dissipated) / points.material(p).density;
+        }};
     return std::nullopt;
   }
 

@@ -33,8 +33,8 @@ namespace impm
       prm.declare_entry("When",
                         "end",
                         Patterns::Selection("end|largest"),
-                        "At the end of the run, or the largest after any "
-                        "step.");
+                        "At the end of the run, or the largest in any row of "
+                        "the history.");
     }
 
     void

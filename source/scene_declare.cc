@@ -182,6 +182,16 @@ namespace impm
                             "The points of a cell share its change of volume, "
                             "against locking of materials that hardly change "
                             "theirs.");
+          prm.declare_entry("Specific heat",
+                            "",
+                            Patterns::Anything(),
+                            "(J/(kg K)), with which plastic work becomes "
+                            "temperature; empty: no temperature.");
+          if (!chosen(path + "Specific heat", "").empty())
+            prm.declare_entry("Initial temperature",
+                              "293.15",
+                              Patterns::Double(0),
+                              "(K).");
           prm.leave_subsection();
         }
       prm.leave_subsection();
@@ -293,6 +303,46 @@ namespace impm
     }
 
     void
+    declare_coordinates(ParameterHandler &prm)
+    {
+      prm.declare_entry("Coordinates",
+                        "current",
+                        Patterns::Selection("current|initial"),
+                        "Whether x, y, z in the expressions of this load are "
+                        "where a point is or where it was at the start.");
+    }
+
+    void
+    declare_traction(ParameterHandler &prm, const std::string &name)
+    {
+      prm.enter_subsection(name);
+      prm.declare_entry("Body",
+                        "",
+                        Patterns::Anything(),
+                        "Name of a deformable body.");
+      prm.declare_entry("Where",
+                        "",
+                        Patterns::Anything(),
+                        "Expression in x, y, z: the traction acts on points of "
+                        "the body whose places at the start make it positive. "
+                        "They should form one layer at its surface.");
+      prm.declare_entry("Normal",
+                        "x",
+                        Patterns::Selection("x|y|z"),
+                        "Direction across the layer. The area of a point is "
+                        "its initial volume over its initial extent in this "
+                        "direction (that of a cube for points from files).");
+      prm.declare_entry("Value",
+                        "",
+                        Patterns::Anything(),
+                        "Force per initial area (Pa), a dead load: expressions "
+                        "in x, y, z, t, one for each direction, between "
+                        "semicolons.");
+      declare_coordinates(prm);
+      prm.leave_subsection();
+    }
+
+    void
     declare_loads(ParameterHandler &prm, const ParameterFile::Chosen &chosen)
     {
       prm.enter_subsection("Loads");
@@ -303,11 +353,15 @@ namespace impm
                         "one for each direction, between semicolons; empty: "
                         "none.");
       if (!chosen("Loads/Body force", "").empty())
-        prm.declare_entry("Coordinates",
-                          "current",
-                          Patterns::Selection("current|initial"),
-                          "Whether x, y, z in the body force are where a point "
-                          "is or where it was at the start.");
+        declare_coordinates(prm);
+      prm.declare_entry("Tractions",
+                        "",
+                        Patterns::Anything(),
+                        "Names of forces on points at the surface of bodies, "
+                        "each with a subsection. On a Lagrangian grid "
+                        "tractions act on faces of the domain instead.");
+      for (const auto &name : split_names(chosen("Loads/Tractions", "")))
+        declare_traction(prm, name);
       prm.leave_subsection();
     }
 
@@ -591,6 +645,15 @@ namespace impm
                           "10",
                           Patterns::Integer(1),
                           "Number of steps.");
+      prm.declare_entry("Steps between rows",
+                        "1",
+                        Patterns::Integer(1),
+                        "Number of steps from a row of the history, with a "
+                        "line on the screen, to the next; the last step of a "
+                        "run has one in any case. Newton and linear "
+                        "iterations, line searches, step cuts, tangent "
+                        "projections, solver fallbacks and noise stops are "
+                        "sums over the steps since the row before.");
       prm.declare_entry("Point fields",
                         "velocity, cauchy_stress, von_mises_stress, "
                         "equivalent_plastic_strain, deformation_gradient, "

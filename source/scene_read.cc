@@ -190,6 +190,72 @@ namespace impm
       return body;
     }
 
+    template <int dim>
+    TractionSpec<dim>
+    read_traction(const ParameterHandler &prm,
+                  const std::string      &name,
+                  const Constants        &constants)
+    {
+      TractionSpec<dim> traction;
+      traction.name   = name;
+      traction.body   = prm.get("Body");
+      traction.normal = prm.get("Normal")[0] - 'x';
+      if (traction.normal >= dim)
+        throw InputError("Normal",
+                         "found '" + prm.get("Normal") +
+                           "', allowed in 2D are x, y");
+      traction.where = read_expressions<dim>(prm, "Where", 1, false, constants);
+      traction.value =
+        read_expressions<dim>(prm, "Value", dim, true, constants);
+      if (!traction.where)
+        throw InputError("Where", "found '', allowed is an expression");
+      if (!traction.value)
+        throw InputError("Value", "found '', allowed are expressions");
+      traction.is_initial = prm.get("Coordinates") == "initial";
+      return traction;
+    }
+
+    template <int dim>
+    void
+    read_loads(ParameterHandler &prm, Scene<dim> &scene)
+    {
+      scene.body_force =
+        read_expressions<dim>(prm, "Body force", dim, true, scene.constants);
+      scene.body_force_is_initial =
+        scene.body_force && prm.get("Coordinates") == "initial";
+      const std::string names = prm.get("Tractions");
+      if (!names.empty() && scene.grid.method == GridMethod::lagrangian)
+        throw InputError("Tractions",
+                         "found '" + names +
+                           "', allowed on a Lagrangian grid, which fits the "
+                           "bodies, are faces of the domain with Type = "
+                           "traction");
+      std::set<std::string> taken;
+      for (const auto &name : split_names(names))
+        {
+          if (!taken.insert(name).second)
+            throw InputError("Tractions", "found '" + name + "' twice");
+          in_section(prm, name, [&]() {
+            scene.tractions.push_back(
+              read_traction<dim>(prm, name, scene.constants));
+          });
+        }
+    }
+
+    /** Of a material; 0 where it has none. */
+    double
+    read_specific_heat(const ParameterHandler &prm)
+    {
+      if (prm.get("Specific heat").empty())
+        return 0;
+      const double heat = get_numbers(prm, "Specific heat", 1)[0];
+      if (!(heat > 0))
+        throw InputError("Specific heat",
+                         "found '" + prm.get("Specific heat") +
+                           "', allowed is a number greater than 0, or nothing");
+      return heat;
+    }
+
     TimeSpec
     read_time(const ParameterHandler &prm, const bool lagrangian)
     {
@@ -327,6 +393,7 @@ namespace impm
       output.pictures         = prm.get_bool("Pictures");
       output.picture_interval = 0;
       output.picture_steps    = 1;
+      output.row_steps        = prm.get_integer("Steps between rows");
       if (output.pictures)
         {
           output.picture_interval = prm.get_double("Time between pictures");
@@ -460,6 +527,8 @@ namespace impm
                            "found '" + found +
                              "', allowed are: " + join(allowed));
       };
+      for (const auto &traction : scene.tractions)
+        require(deformables, traction.body, "Loads/" + traction.name + "/Body");
       for (const auto &reaction : scene.output.reactions)
         require(carriers, reaction.on, "Output/" + reaction.name + "/On");
       for (const auto &probe : scene.output.probes)
@@ -523,6 +592,10 @@ namespace impm
               materials[name] = entry.create(prm);
           materials[name]->average_volume = prm.get_bool("F-bar");
           check_law(*materials[name], prm.get("Law"), scene.geometry);
+          materials[name]->specific_heat  = read_specific_heat(prm);
+          if (materials[name]->specific_heat > 0)
+            materials[name]->initial_temperature =
+              prm.get_double("Initial temperature");
         });
     });
     in_section(prm, "Time", [&]() { scene.time = read_time(prm, lagrangian); });
@@ -551,12 +624,7 @@ namespace impm
           scene.faces[f] = read_face<dim>(prm, f, lagrangian, scene.constants);
         });
     });
-    in_section(prm, "Loads", [&]() {
-      scene.body_force =
-        read_expressions<dim>(prm, "Body force", dim, true, scene.constants);
-      scene.body_force_is_initial =
-        scene.body_force && prm.get("Coordinates") == "initial";
-    });
+    in_section(prm, "Loads", [&]() { read_loads(prm, scene); });
     const bool explicit_steps = scene.time.integrator == "explicit";
     if (!explicit_steps)
       in_section(prm, "Solver", [&]() {

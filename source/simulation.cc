@@ -2,6 +2,7 @@
 
 #include <impm/checkpoint.h>
 #include <impm/exceptions.h>
+#include <impm/point_traction.h>
 #include <impm/simulation.h>
 #include <impm/summary.h>
 #include <impm/transfer.h>
@@ -46,8 +47,12 @@ namespace impm
     text << (scene.title.empty() ? "scene" : scene.title) << '\n'
          << "  grid: " << grid.triangulation.n_global_active_cells()
          << " cells, " << grid.dof_handler.n_dofs() << " unknowns\n"
-         << "  points: " << points.sorted.n_global() << '\n'
-         << "  fields of a point:\n";
+         << "  points: " << points.sorted.n_global() << '\n';
+    const auto counts = count_points_under_tractions(scene, points);
+    for (unsigned int t = 0; t < counts.size(); ++t)
+      text << "  traction " << scene.tractions[t].name << ": on " << counts[t]
+           << " points\n";
+    text << "  fields of a point:\n";
     for (const auto &field : points.layout.fields())
       text << "    " << field.name << " (" << field.n_components << ")\n";
     text << "  bytes per point: " << points.bytes_per_point();
@@ -319,6 +324,22 @@ namespace impm
 
   template <int dim>
   void
+  Simulation<dim>::write_row(const StepReport &since_row)
+  {
+    history.write(since_row);
+    if (reference.follows_steps())
+      {
+        TimerOutput::Scope scope(timer, "references");
+        reference.follow_step(time);
+      }
+    console.step(since_row,
+                 scene.time.end,
+                 points.sorted.n_global(),
+                 history.last_figures());
+  }
+
+  template <int dim>
+  void
   Simulation<dim>::run(const std::string &directory,
                        const std::string &scene_name,
                        const std::string &parameters,
@@ -341,27 +362,27 @@ namespace impm
     warn_of_instability();
     if (scene.output.pictures)
       picture(false);
-    next_picture = scene.output.picture_interval;
+    next_picture       = scene.output.picture_interval;
+    const auto is_over = [&]() {
+      return time >= scene.time.end * (1 - 1e-12) ||
+             report.step >= scene.time.largest_number_of_steps;
+    };
+    StepReport since_row;
     try
       {
-        while (time < scene.time.end * (1 - 1e-12) &&
-               report.step < scene.time.largest_number_of_steps)
+        while (!is_over())
           {
             advance();
-            history.write(report);
-            if (reference.follows_steps())
+            since_row.append(report);
+            const bool last = is_over();
+            if (last || report.step % scene.output.row_steps == 0)
               {
-                TimerOutput::Scope scope(timer, "references");
-                reference.follow_step(time);
+                write_row(since_row);
+                since_row = StepReport();
               }
-            console.step(report,
-                         scene.time.end,
-                         points.sorted.n_global(),
-                         history.last_figures());
-            const bool last = time >= scene.time.end * (1 - 1e-12);
-            const bool due  = scene.output.picture_interval > 0 ?
-                                time >= next_picture * (1 - 1e-9) :
-                                report.step % scene.output.picture_steps == 0;
+            const bool due = scene.output.picture_interval > 0 ?
+                               time >= next_picture * (1 - 1e-9) :
+                               report.step % scene.output.picture_steps == 0;
             if (scene.output.pictures && (due || last))
               {
                 picture(true);

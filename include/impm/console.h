@@ -14,7 +14,10 @@ namespace impm
   public:
     Console(CommandLine::Verbosity verbosity, bool is_first_rank);
 
-    /** One line a step, and a progress bar if a person is watching. */
+    /**
+     * One line a row of the history, and a progress bar if a person is
+     * watching.
+     */
     void
     step(const StepReport                                  &report,
          double                                             end_time,

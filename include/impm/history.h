@@ -11,7 +11,7 @@
 
 namespace impm
 {
-  /** What happened in one step, apart from what points and grid tell. */
+  /** What happened in steps, apart from what points and grid tell. */
   struct StepReport
   {
     unsigned int step              = 0;
@@ -24,6 +24,10 @@ namespace impm
     double residual            = 0;
     double external_work       = 0; ///< since the start (J)
     double wall_seconds        = 0; ///< since the start
+
+    /** Goes on to a later step; counts add up. */
+    void
+    append(const StepReport &next);
   };
 
   /** Sums over all points. */
@@ -46,7 +50,7 @@ namespace impm
   std::vector<std::string>
   history_columns(const Scene<dim> &scene);
 
-  /** history.csv: a header line, then a row a step, each on disk at once. */
+  /** history.csv: a header line, then rows, each on disk at once. */
   template <int dim>
   class History
   {
@@ -71,7 +75,10 @@ namespace impm
     void
     take_reactions();
 
-    /** Adds a row, after the points have moved. Collective. */
+    /**
+     * Adds a row, after the points have moved, on all that happened since the
+     * row before. Collective.
+     */
     void
     write(const StepReport &report);
 

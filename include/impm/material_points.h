@@ -102,6 +102,10 @@ namespace impm
       return *materials[body(point)];
     }
 
+    /** Whether all materials have a specific heat. */
+    bool
+    have_temperature() const;
+
     double
     initial_volume(const unsigned int point) const
     {

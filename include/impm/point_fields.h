@@ -23,7 +23,14 @@ namespace impm
       evaluate;
   };
 
-  /** Names of all the fields that some scene can have. */
+  /**
+   * Names of all the fields that some scene can have. Those that points do
+   * not carry follow from what they do:
+   *
+   *   temperature      T0 + plastic work / (rho0 c): all of it heats, nothing
+   *                    is conducted (Sulsky & Kaul 2004, eq. 2.3.5) (K)
+   *   internal_energy  what is stored plus plastic work (eq. 2.2.16) (J/kg)
+   */
   const std::vector<std::string> &
   point_field_names();
 

@@ -34,11 +34,11 @@ namespace impm
               const MaterialPoints<dim> &points,
               History<dim>              &history);
 
-    /** Whether some error is the largest over all steps. */
+    /** Whether some error is the largest over the rows of the history. */
     bool
     follows_steps() const;
 
-    /** Compares after a step, at its end time. Collective. */
+    /** Compares where the history has a row, at its time. Collective. */
     void
     follow_step(double time);
 
@@ -60,7 +60,7 @@ namespace impm
       std::optional<PointField<dim>> field;
       std::vector<unsigned int>      components;
       std::vector<bool>              takes_body;
-      FieldNorms                     largest; ///< of each, over the steps
+      FieldNorms                     largest; ///< of each, over the rows
     };
 
     void

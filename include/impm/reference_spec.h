@@ -35,7 +35,7 @@ namespace impm
     std::vector<unsigned int>                    components; ///< empty: all
     std::vector<std::string>                     bodies;     ///< empty: all
     std::shared_ptr<dealii::FunctionParser<dim>> expressions;
-    bool largest = false; ///< over all steps, rather than at the end
+    bool largest = false; ///< over the rows, rather than at the end
 
     /** Columns of the history; one, but for a finer run. */
     std::vector<std::string>                   columns;

@@ -85,6 +85,20 @@ namespace impm
     std::shared_ptr<dealii::FunctionParser<dim>> traction;
   };
 
+  /** A force on the points of one layer at the surface of a body. */
+  template <int dim>
+  struct TractionSpec
+  {
+    std::string  name;
+    std::string  body;
+    unsigned int normal; ///< direction across the layer
+    /** Positive at the initial places of the points that carry it. */
+    std::shared_ptr<dealii::FunctionParser<dim>> where;
+    /** Force per initial area (Pa) in (x, t). */
+    std::shared_ptr<dealii::FunctionParser<dim>> value;
+    bool is_initial = false; ///< `value` is a function of initial places
+  };
+
   /** A figure of the points in a column of the history. */
   struct ProbeSpec
   {
@@ -186,6 +200,7 @@ namespace impm
     bool                     pictures;
     double                   picture_interval; ///< 0: every picture_steps steps
     unsigned int             picture_steps;
+    unsigned int             row_steps; ///< between rows of history
     std::vector<std::string> point_fields;
     std::vector<ProbeSpec>   probes;
     std::vector<ReactionSpec> reactions;
@@ -202,9 +217,10 @@ namespace impm
     std::vector<BodySpec<dim>>                   bodies;
     std::array<FaceSpec<dim>, 2 * dim>           faces;
     std::shared_ptr<dealii::FunctionParser<dim>> body_force; ///< N/kg, or null
-    bool       body_force_is_initial = false; ///< a function of initial places
-    TimeSpec   time;
-    SolverSpec solver;
+    bool body_force_is_initial = false;        ///< a function of initial places
+    std::vector<TractionSpec<dim>>  tractions; ///< on points
+    TimeSpec                        time;
+    SolverSpec                      solver;
     StabilizationSpec               stabilization;
     OutputSpec                      output;
     std::vector<ReferenceSpec<dim>> references;

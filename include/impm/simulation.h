@@ -70,6 +70,10 @@ namespace impm
     double
     external_work_of_step() const;
 
+    /** What is due once a row of the history. Collective. */
+    void
+    write_row(const StepReport &since_row);
+
     void
     picture(bool grid_has_increment);
 

@@ -74,6 +74,34 @@ TEST(VerificationMpi, Column)
 }
 
 
+// The strain of the last cell lacks 1/(2 n): see prm/bar_traction.prm.
+TEST(VerificationMpi, BarUnderTraction)
+{
+  const auto run = [](const unsigned int cells, const Overrides &overrides) {
+    Overrides all = overrides;
+    all.push_back("Grid/Cells=" + std::to_string(12 * cells) + ", " +
+                  std::to_string(2 * cells));
+    all.push_back("Loads/pull/Where=x - 1 + 0.0625/" + std::to_string(cells));
+    return run_file("bar_traction", all);
+  };
+  const Overrides small = {
+    "General/Constants=pull = 1, stretch = 1.0000010000015, cell = 0"};
+  for (const std::string method : {"MPM", "GIMP"})
+    for (const unsigned int cells : {1, 2, 4})
+      {
+        SCOPED_TRACE(method);
+        const auto errors = run(cells, {small[0], "Grid/Method=" + method});
+        EXPECT_NEAR(error_of(errors, "tip") * cells, 1. / 32, 1e-5);
+        EXPECT_NEAR(error_of(errors, "stress") * cells, 1. / 32, 1e-5);
+      }
+  const auto coarse = run(1, {}), fine = run(4, {});
+  EXPECT_LT(error_of(fine, "tip"), 4e-3);
+  EXPECT_LT(error_of(fine, "tip"), 0.25 * error_of(coarse, "tip"));
+  EXPECT_LT(error_of(fine, "displacement"), 2e-4);
+  EXPECT_LT(error_of(fine, "stress"), 0.4 * error_of(coarse, "stress"));
+}
+
+
 TEST(VerificationMpi, OscillatingBar)
 {
   const auto error = [](const std::string &step, const Overrides &integrator) {

@@ -156,6 +156,11 @@ namespace impm
     /** Whether the points of a cell share its change of volume (F-bar). */
     bool average_volume = false;
 
+    /** (J/(kg K)); 0: no temperature. */
+    double specific_heat = 0;
+
+    double initial_temperature = 0; ///< (K), if it has a specific heat
+
     const double density; ///< in the initial configuration (kg/m^3)
   };
 } // namespace impm

@@ -585,10 +585,10 @@ namespace impm
       prm.declare_entry(
         "Kind",
         "point",
-        Patterns::Selection("point|largest|smallest|mean|extent|motion"),
+        Patterns::Selection("point|largest|smallest|spread|mean|extent|motion"),
         "point: at the point nearest to a place at the start, from which a "
         "displacement is carried on to the place by F. Largest, "
-        "smallest, mean: over bodies. Extent: largest coordinate, the points' "
+        "smallest, spread (their difference), mean: over bodies. Extent: largest coordinate, the points' "
         "domains included. Motion: of a moving face or a rigid body.");
       const auto kind = chosen("Output/" + name + "/Kind", "point");
       if (kind == "point")
@@ -606,6 +606,12 @@ namespace impm
                           "",
                           Patterns::Anything(),
                           "Names of bodies; empty: all deformable ones.");
+      if (kind != "motion" && kind != "point")
+        prm.declare_entry("Where",
+                          "",
+                          Patterns::Anything(),
+                          "Expression in x, y, z at the start: only points "
+                          "that make it positive count; empty: all.");
       if (kind != "motion" && kind != "extent")
         prm.declare_entry("Field",
                           "displacement",

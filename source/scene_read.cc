@@ -592,7 +592,7 @@ namespace impm
               materials[name] = entry.create(prm);
           materials[name]->average_volume = prm.get_bool("F-bar");
           check_law(*materials[name], prm.get("Law"), scene.geometry);
-          materials[name]->specific_heat  = read_specific_heat(prm);
+          materials[name]->specific_heat = read_specific_heat(prm);
           if (materials[name]->specific_heat > 0)
             materials[name]->initial_temperature =
               prm.get_double("Initial temperature");

@@ -182,11 +182,12 @@ namespace impm
                             "The points of a cell share its change of volume, "
                             "against locking of materials that hardly change "
                             "theirs.");
-          prm.declare_entry("Specific heat",
-                            "",
-                            Patterns::Anything(),
-                            "(J/(kg K)), with which plastic work becomes "
-                            "temperature; empty: no temperature.");
+          prm.declare_entry(
+            "Specific heat",
+            "",
+            Patterns::Anything(),
+            "(J/(kg K)), with which plastic or viscous work becomes "
+            "temperature; empty: no temperature.");
           if (!chosen(path + "Specific heat", "").empty())
             prm.declare_entry("Initial temperature",
                               "293.15",

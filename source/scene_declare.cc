@@ -473,7 +473,8 @@ namespace impm
                         "Unit of the norm of residuals. Body: that of the "
                         "forces of all material at a strain of one. Cell: "
                         "largest Young's modulus times dx dy (dz) of the "
-                        "smallest cell (Sulsky & Kaul 2004, section 3.2.2). "
+                        "smallest cell, of a radian if axisymmetric (Sulsky & "
+                        "Kaul 2004, section 3.2.2). "
                         "Momentum: force times time step in N s (their section "
                         "3.1).");
       prm.declare_entry("Newton tolerance",

@@ -1,6 +1,8 @@
 #include <impm/difference_quotient.h>
 #include <impm/exceptions.h>
 
+#include <cmath>
+
 namespace impm
 {
   using namespace dealii;
@@ -13,6 +15,19 @@ namespace impm
   {
     for (Vector *vector : {&u, &residual, &direction})
       balance.grid.initialize(*vector);
+  }
+
+  template <int dim>
+  double
+  DifferenceQuotient<dim>::norm(const Vector &increment) const
+  {
+    if (!balance.in_momentum())
+      return increment.l2_norm();
+    double squares = 0;
+    for (unsigned int i = 0; i < increment.locally_owned_size(); ++i)
+      squares +=
+        std::pow(balance.mass.local_element(i) * increment.local_element(i), 2);
+    return std::sqrt(Utilities::MPI::sum(squares, balance.grid.communicator));
   }
 
   template <int dim>
@@ -30,15 +45,17 @@ namespace impm
     ++balance.n_operator_applications;
     direction = src;
     balance.constraints.interpolate_hanging(direction);
-    const double length = direction.l2_norm();
+    const double length = norm(direction);
     if (length == 0)
       {
         dst = 0;
         return;
       }
-    const double size = u.l2_norm();
+    const double size = norm(u);
     const double epsilon =
-      step * (size > 0 ? size : balance.grid.smallest_cell_extent());
+      step * (size > 0 ? size :
+                         balance.grid.smallest_cell_extent() * length /
+                           direction.linfty_norm());
     direction.sadd(epsilon / length, 1., u);
     if (!balance.evaluate(direction, false).admissible)
       throw LinearizationError(

@@ -231,9 +231,8 @@ namespace impm
             return rigid.displacement(b, 0, time)[component];
       }
 
-    const double limit = std::numeric_limits<double>::max();
-    double       best = spec.kind == Kind::smallest ? limit : -limit, sum = 0,
-           weight  = 0;
+    const double limit    = std::numeric_limits<double>::max();
+    double       smallest = limit, largest = -limit, sum = 0, weight = 0;
     unsigned int p = 0;
     for (const auto &particle : points.sorted.particles)
       {
@@ -246,6 +245,12 @@ namespace impm
                 std::find(spec.bodies.begin(), spec.bodies.end(), body.name) ==
                   spec.bodies.end())
           continue;
+        if (spec.where)
+          {
+            const auto start = points.initial_position(point);
+            if (!(spec.where(start.begin_raw()) > 0))
+              continue;
+          }
         double values[9] = {};
         if (follower.field)
           follower.field->evaluate(point, particle.get_location(), values);
@@ -270,16 +275,20 @@ namespace impm
             for (unsigned int d = 0; d < dim; ++d)
               value += 0.5 * std::abs(F[component][d]) * domain[d];
           }
-        best = spec.kind == Kind::smallest ? std::min(best, value) :
-                                             std::max(best, value);
+        smallest = std::min(smallest, value);
+        largest  = std::max(largest, value);
         sum += value * points.initial_volume(point);
         weight += points.initial_volume(point);
       }
     const auto comm = points.communicator;
     if (spec.kind == Kind::mean)
       return Utilities::MPI::sum(sum, comm) / Utilities::MPI::sum(weight, comm);
-    return spec.kind == Kind::smallest ? Utilities::MPI::min(best, comm) :
-                                         Utilities::MPI::max(best, comm);
+    if (spec.kind == Kind::smallest)
+      return Utilities::MPI::min(smallest, comm);
+    largest = Utilities::MPI::max(largest, comm);
+    return spec.kind == Kind::spread ?
+             largest - Utilities::MPI::min(smallest, comm) :
+             largest;
   }
 
   template <int dim>

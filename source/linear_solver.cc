@@ -94,6 +94,8 @@ namespace impm
           inverse_diagonal.local_element(i) =
             1 / inverse_diagonal.local_element(i);
       }
+    else if (solves_for_momentum())
+      balance.inverse_mass(inverse_diagonal);
     else if (spec.preconditioner == "AMG")
       {
         TimerOutput::Scope scope(timer, "preconditioner");
@@ -155,7 +157,7 @@ namespace impm
     const auto run = [&](auto &solver) {
       if (spec.preconditioner == "AMG")
         solver.solve(tangent, x, b, amg);
-      else if (spec.preconditioner == "Jacobi")
+      else if (spec.preconditioner == "Jacobi" || solves_for_momentum())
         solver.solve(tangent, x, b, JacobiPreconditioner{inverse_diagonal});
       else
         solver.solve(tangent, x, b, PreconditionIdentity());

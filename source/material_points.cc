@@ -118,7 +118,7 @@ namespace impm
       std::any_of(output.probes.begin(),
                   output.probes.end(),
                   [](const ProbeSpec &probe) {
-                    return probe.field == "displacement";
+                    return probe.field == "displacement" || probe.where;
                   }) ||
       std::any_of(scene.references.begin(),
                   scene.references.end(),

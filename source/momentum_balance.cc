@@ -138,7 +138,9 @@ namespace impm
           product *= cell_extent(cell.cell, d);
         volume = std::min(volume, product);
       }
-    return stiffness * Utilities::MPI::min(volume, grid.communicator);
+    // The paper's forces around an axis are those of a radian.
+    return (axisymmetric ? 2 * numbers::PI : 1.) * stiffness *
+           Utilities::MPI::min(volume, grid.communicator);
   }
 
   template <int dim>
@@ -327,6 +329,15 @@ namespace impm
     u.equ(dt, velocity);
     u.add(dt * dt, acceleration);
     constraints.set_prescribed(u);
+  }
+
+  template <int dim>
+  void
+  MomentumBalance<dim>::inverse_mass(Vector &inverse) const
+  {
+    for (unsigned int i = 0; i < mass.locally_owned_size(); ++i)
+      inverse.local_element(i) =
+        constraints.is_constrained[i] ? 1. : 1 / mass.local_element(i);
   }
 
   template <int dim>

@@ -41,6 +41,7 @@ namespace impm
         {"Loads/Tractions", "traction"},
         {"Time/Integrator", "any"},
         {"Solver/Linear solver", "GMRES"},
+        {"Solver/Operator", "any"},
         {"Output/Probes", "point,largest,extent,motion"},
         {"Output/Reactions", "reaction"},
         {"Reference/Names", "field,probe,curve,finer run"},

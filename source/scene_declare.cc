@@ -182,11 +182,12 @@ namespace impm
                             "The points of a cell share its change of volume, "
                             "against locking of materials that hardly change "
                             "theirs.");
-          prm.declare_entry("Specific heat",
-                            "",
-                            Patterns::Anything(),
-                            "(J/(kg K)), with which plastic work becomes "
-                            "temperature; empty: no temperature.");
+          prm.declare_entry(
+            "Specific heat",
+            "",
+            Patterns::Anything(),
+            "(J/(kg K)), with which plastic or viscous work becomes "
+            "temperature; empty: no temperature.");
           if (!chosen(path + "Specific heat", "").empty())
             prm.declare_entry("Initial temperature",
                               "293.15",
@@ -472,7 +473,8 @@ namespace impm
                         "Unit of the norm of residuals. Body: that of the "
                         "forces of all material at a strain of one. Cell: "
                         "largest Young's modulus times dx dy (dz) of the "
-                        "smallest cell (Sulsky & Kaul 2004, section 3.2.2). "
+                        "smallest cell, of a radian if axisymmetric (Sulsky & "
+                        "Kaul 2004, section 3.2.2). "
                         "Momentum: force times time step in N s (their section "
                         "3.1).");
       prm.declare_entry("Newton tolerance",
@@ -585,10 +587,10 @@ namespace impm
       prm.declare_entry(
         "Kind",
         "point",
-        Patterns::Selection("point|largest|smallest|mean|extent|motion"),
+        Patterns::Selection("point|largest|smallest|spread|mean|extent|motion"),
         "point: at the point nearest to a place at the start, from which a "
         "displacement is carried on to the place by F. Largest, "
-        "smallest, mean: over bodies. Extent: largest coordinate, the points' "
+        "smallest, spread (their difference), mean: over bodies. Extent: largest coordinate, the points' "
         "domains included. Motion: of a moving face or a rigid body.");
       const auto kind = chosen("Output/" + name + "/Kind", "point");
       if (kind == "point")
@@ -606,6 +608,12 @@ namespace impm
                           "",
                           Patterns::Anything(),
                           "Names of bodies; empty: all deformable ones.");
+      if (kind != "motion" && kind != "point")
+        prm.declare_entry("Where",
+                          "",
+                          Patterns::Anything(),
+                          "Expression in x, y, z at the start: only points "
+                          "that make it positive count; empty: all.");
       if (kind != "motion" && kind != "extent")
         prm.declare_entry("Field",
                           "displacement",

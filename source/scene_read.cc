@@ -358,13 +358,14 @@ namespace impm
       return solver;
     }
 
+    template <int dim>
     ProbeSpec
     read_probe(const ParameterHandler &prm,
                const std::string      &name,
-               const unsigned int      dim)
+               const Constants        &constants)
     {
       const std::vector<std::string> kinds = {
-        "point", "largest", "smallest", "mean", "extent", "motion"};
+        "point", "largest", "smallest", "spread", "mean", "extent", "motion"};
       const std::string kind = prm.get("Kind");
 
       ProbeSpec probe;
@@ -376,7 +377,17 @@ namespace impm
       else if (kind == "motion")
         probe.of = prm.get("Of");
       else
-        probe.bodies = split_names(prm.get("Bodies"));
+        {
+          probe.bodies = split_names(prm.get("Bodies"));
+          const std::shared_ptr<FunctionParser<dim>> where =
+            read_expressions<dim>(prm, "Where", 1, false, constants);
+          if (where)
+            probe.where = [where](const double *initial_position) {
+              dealii::Point<dim> place;
+              std::copy_n(initial_position, dim, place.begin_raw());
+              return where->value(place);
+            };
+        }
       if (kind != "motion" && kind != "extent")
         probe.field = prm.get("Field");
       probe.component = prm.get_integer("Component");
@@ -386,7 +397,7 @@ namespace impm
 
     template <int dim>
     OutputSpec
-    read_output(ParameterHandler &prm)
+    read_output(ParameterHandler &prm, const Constants &constants)
     {
       OutputSpec output;
       output.directory        = prm.get("Directory");
@@ -403,7 +414,7 @@ namespace impm
         }
       for (const auto &name : split_names(prm.get("Probes")))
         in_section(prm, name, [&]() {
-          output.probes.push_back(read_probe(prm, name, dim));
+          output.probes.push_back(read_probe<dim>(prm, name, constants));
         });
       for (const auto &name : split_names(prm.get("Reactions")))
         in_section(prm, name, [&]() {
@@ -592,7 +603,7 @@ namespace impm
               materials[name] = entry.create(prm);
           materials[name]->average_volume = prm.get_bool("F-bar");
           check_law(*materials[name], prm.get("Law"), scene.geometry);
-          materials[name]->specific_heat  = read_specific_heat(prm);
+          materials[name]->specific_heat = read_specific_heat(prm);
           if (materials[name]->specific_heat > 0)
             materials[name]->initial_temperature =
               prm.get_double("Initial temperature");
@@ -637,7 +648,9 @@ namespace impm
         scene.stabilization.isolated_stiffness =
           scene.has_inertia() ? 0. : prm.get_double("Isolated stiffness");
       });
-    in_section(prm, "Output", [&]() { scene.output = read_output<dim>(prm); });
+    in_section(prm, "Output", [&]() {
+      scene.output = read_output<dim>(prm, scene.constants);
+    });
     in_section(prm, "Reference", [&]() {
       scene.references =
         read_references<dim>(prm, scene.constants, parameter_file);

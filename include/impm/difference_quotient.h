@@ -8,7 +8,8 @@ namespace impm
   /**
    * The tangent's action by a difference of residuals (Sulsky & Kaul 2004, eq.
    * 2.4.18): J(u) s = |s| (r(u + e s / |s|) - r(u)) / e with e = h |u|, or h
-   * itself, in units of a cell, where u = 0.
+   * itself, in units of a cell, where u = 0. In the momentum formulation the
+   * unknown is that of the nodes.
    */
   template <int dim>
   class DifferenceQuotient
@@ -32,6 +33,10 @@ namespace impm
     vmult_lift(Vector &dst, const Vector &src);
 
   private:
+    /** Of an increment, or of the momentum that it stands for. */
+    double
+    norm(const Vector &increment) const;
+
     MomentumBalance<dim> &balance;
     const double          step;
     Vector                u, residual, direction;

@@ -57,6 +57,16 @@ namespace impm
     void
     solve_directly(Vector &x, const Vector &b);
 
+    /**
+     * The unknowns of the momentum formulation are the nodes' momenta: an
+     * increment of a node with little mass says little.
+     */
+    bool
+    solves_for_momentum() const
+    {
+      return balance.in_momentum() && spec.preconditioner == "none";
+    }
+
     bool
     needs_matrix() const
     {

@@ -160,6 +160,17 @@ namespace impm
              (factor < 1 ? (1 - factor) * start_load.local_element(index) : 0.);
     }
 
+    /** Whether this is the momentum formulation. */
+    bool
+    in_momentum() const
+    {
+      return smoothing != nullptr;
+    }
+
+    /** Inverse of the lumped mass (1/kg), one where constrained. */
+    void
+    inverse_mass(Vector &inverse) const;
+
     /** Whether a rotation of the body is free of energy. */
     bool
     has_rotations() const

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -108,6 +109,7 @@ namespace impm
                ///< displacement is carried on to the place by F
       largest, ///< over all points of the bodies
       smallest,
+      spread, ///< largest minus smallest
       mean,   ///< weighted by initial volume
       extent, ///< largest coordinate, the points' domains included
       motion  ///< displacement of a moving face or rigid body
@@ -120,6 +122,8 @@ namespace impm
     std::vector<double>      position;
     std::vector<std::string> bodies; ///< empty: all
     std::string              of;     ///< motion: face or rigid body
+    /** Positive at the initial places of the points that count; null: all. */
+    std::function<double(const double *initial_position)> where;
   };
 
   /** Force of the material on a face or a rigid body, along a direction. */

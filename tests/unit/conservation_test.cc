@@ -171,6 +171,57 @@ TEST(ConservationMpi, ExplicitStepsKeepMomentum)
 }
 
 
+// What points lose at a wall is what the wall exerts, from the first step on,
+// in which nothing but the wall's own nodes can know of it.
+TEST(ConservationMpi, WallTakesWhatThePointsLose)
+{
+  const Overrides              wall = {"Geometry/box/Lower corner=0, 0.4",
+                                       "Geometry/box/Upper corner=0.4, 0.75",
+                                       "Grid/Cells=8, 8",
+                                       "Time/Time step=0.02",
+                                       "Boundary conditions/left/Type=fixed",
+                                       "Bodies/block/Velocity=-0.1; 0.03*x"};
+  const std::vector<Overrides> integrators = {
+    {"Time/Integrator=theta"},
+    {"Time/Integrator=theta", "Time/Theta=0.5"},
+    {"Time/Integrator=explicit"},
+    {"Time/Integrator=explicit", "Time/Formulation=momentum"},
+    {"Time/Integrator=theta",
+     "Time/Formulation=momentum",
+     "Solver/Linear solver=GMRES",
+     "Solver/Linear tolerance=1e-10"},
+    {"Time/Integrator=Newmark"},
+    {"Time/Integrator=Newmark", "Grid/Method=GIMP"}};
+  for (const auto &integrator : integrators)
+    {
+      SCOPED_TRACE(integrator.back());
+      Model<2>     model(block_scene("plane strain"), wall + integrator);
+      impm::Vector u;
+      Tensor<1, 2> impulse;
+      Tensor<1, 2> first;
+      const auto   start = total(model.points).momentum;
+      for (unsigned int step = 0; step < 10; ++step)
+        {
+          ASSERT_TRUE(model.solve(u).converged);
+          const auto &forces = model.balance.constraint_forces();
+          for (unsigned int d = 0; d < 2; ++d)
+            impulse[d] +=
+              model.dt * model.balance.constraints.sum_over("left",
+                                                            forces,
+                                                            {d == 0 ? 1. : 0.,
+                                                             d == 1 ? 1. : 0.});
+          model.commit(u);
+          const auto lost = total(model.points).momentum - start;
+          if (step == 0)
+            first = lost;
+          EXPECT_LT((lost - impulse).norm(), 1e-12) << step;
+        }
+      EXPECT_GT(impulse[0], 10 * first[0]); // no jump by the mass of a node
+      EXPECT_GT(impulse[0], 1e-4);
+    }
+}
+
+
 // A block of one velocity just flies: no force, whatever grid it crosses.
 TEST(ConservationMpi, UniformVelocityStaysUniform)
 {

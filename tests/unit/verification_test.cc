@@ -177,3 +177,31 @@ TEST(VerificationMpi, ManufacturedSolution)
       EXPECT_GT(error("8, 8") / error("16, 16"), 3.) << method;
     }
 }
+
+
+// Uniaxial stress; see prm/bar_elastic.prm and prm/bar_plastic.prm.
+TEST(VerificationMpi, Bars)
+{
+  const Overrides newton_cg,
+    newton_gmres   = {"Time/Formulation=momentum",
+                      "Solver/Linear solver=GMRES",
+                      "Solver/Linear iterations=20"},
+    explicit_steps = {"Time/Integrator=explicit",
+                      "Time/Time step=0.0047",
+                      "Time/Growth=1"};
+  for (const auto &method : {newton_cg, newton_gmres, explicit_steps})
+    {
+      SCOPED_TRACE(method.empty() ? "" : method[0]);
+      const auto elastic = run_file("bar_elastic", method);
+      EXPECT_NEAR(elastic.at("mean_stress_xx").at("value").get<double>(),
+                  1000 * 0.01 / 0.3,
+                  1e-6);
+      EXPECT_LT(error_of(elastic, "stress_spread"), 1e-6);
+      if (method == explicit_steps)
+        continue;
+      const auto plastic = run_file("bar_plastic", method);
+      EXPECT_LT(error_of(plastic, "mean_stress_xx"), 1e-4);
+      EXPECT_LT(error_of(plastic, "stress_spread"), 1e-6);
+      EXPECT_LT(error_of(plastic, "mean_plastic_strain"), 1e-5);
+    }
+}

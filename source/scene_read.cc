@@ -3,7 +3,7 @@
 #include <impm/exceptions.h>
 #include <impm/expressions.h>
 #include <impm/materials/list.h>
-#include <impm/scene.h>
+#include <impm/scene_sections.h>
 
 #include <algorithm>
 #include <set>
@@ -15,8 +15,6 @@ namespace impm
 
   namespace
   {
-    using Constants = std::map<std::string, double>;
-
     Constants
     read_constants(const ParameterHandler &prm)
     {
@@ -256,306 +254,6 @@ namespace impm
       return heat;
     }
 
-    TimeSpec
-    read_time(const ParameterHandler &prm, const bool lagrangian)
-    {
-      TimeSpec time;
-      time.integrator = prm.get("Integrator");
-      if (time.integrator == "theta")
-        time.theta = prm.get_double("Theta");
-      if (time.integrator == "explicit")
-        time.theta = 0;
-      if (!lagrangian && time.integrator != "quasi-static")
-        time.momentum_formulation = prm.get("Formulation") == "momentum";
-      if (time.integrator == "Newmark")
-        {
-          time.beta               = prm.get_double("Beta");
-          time.gamma              = prm.get_double("Gamma");
-          time.keeps_acceleration = prm.get("Acceleration from") == "points";
-        }
-      if (lagrangian)
-        time.transfer = TransferKind::pic; // points only show the motion
-      else if (time.integrator != "quasi-static")
-        {
-          const std::string transfer = prm.get("Transfer");
-          time.transfer              = transfer == "FLIP" ? TransferKind::flip :
-                                       transfer == "PIC"  ? TransferKind::pic :
-                                                            TransferKind::apic;
-          if (time.momentum_formulation && transfer != "FLIP")
-            throw InputError("Transfer",
-                             "found '" + transfer +
-                               "', allowed in the momentum formulation, which "
-                               "maps changes of velocity, is FLIP");
-        }
-      time.end = prm.get_double("End time");
-      if (time.integrator != "quasi-static")
-        time.cfl_number = prm.get_double("CFL number");
-      const std::string step_entry =
-        time.cfl_number > 0 ? "CFL number" : "Time step";
-      time.step         = prm.get_double(step_entry);
-      time.growth       = prm.get_double("Growth");
-      time.largest_step = time.step;
-      if (!prm.get("Largest time step").empty())
-        time.largest_step = get_numbers(prm, "Largest time step", 1)[0];
-      if (time.largest_step < time.step)
-        throw InputError("Largest time step",
-                         "found '" + prm.get("Largest time step") +
-                           "', allowed is at least '" + step_entry +
-                           "' = " + prm.get(step_entry));
-      if (time.growth > 1 && time.largest_step == time.step)
-        throw InputError("Growth",
-                         "found '" + prm.get("Growth") +
-                           "', which does nothing without a 'Largest time "
-                           "step' above '" +
-                           step_entry + "'");
-      time.smallest_step           = prm.get_double("Smallest time step");
-      time.largest_number_of_steps = prm.get_integer("Largest number of steps");
-      return time;
-    }
-
-    SolverSpec
-    read_solver(const ParameterHandler &prm, const TimeSpec &time)
-    {
-      SolverSpec        solver;
-      const std::string scale  = prm.get("Residual scale");
-      solver.residual_scale    = scale == "body" ? ResidualScale::body :
-                                 scale == "cell" ? ResidualScale::cell :
-                                                   ResidualScale::momentum;
-      solver.newton_tolerance  = prm.get_double("Newton tolerance");
-      solver.newton_reduction  = prm.get_double("Newton reduction");
-      solver.newton_iterations = prm.get_integer("Newton iterations");
-      solver.line_search       = prm.get_bool("Line search");
-      solver.linear_solver     = prm.get("Linear solver");
-      if (time.momentum_formulation && solver.linear_solver != "GMRES")
-        throw InputError("Linear solver",
-                         "found '" + solver.linear_solver +
-                           "', allowed with the momentum formulation, whose "
-                           "tangent is unsymmetric and never a matrix, is "
-                           "GMRES");
-      if (solver.linear_solver != "direct")
-        {
-          solver.linear_tolerance  = prm.get_double("Linear tolerance");
-          solver.linear_iterations = prm.get_integer("Linear iterations");
-          solver.preconditioner    = prm.get("Preconditioner");
-          const std::string kind   = prm.get("Operator");
-          solver.tangent           = kind == "matrix" ? TangentKind::matrix :
-                                     kind == "matrix-free" ?
-                                                        TangentKind::matrix_free :
-                                                        TangentKind::difference_quotient;
-          if (solver.tangent == TangentKind::difference_quotient)
-            solver.difference_step = prm.get_double("Difference step");
-          const std::string unfinished = prm.get("Unfinished solves");
-          if (time.momentum_formulation && unfinished == "direct solver")
-            throw InputError("Unfinished solves",
-                             "found 'direct solver', allowed with the momentum "
-                             "formulation, whose tangent is never a matrix, is "
-                             "'next Newton step'");
-          solver.accept_unfinished =
-            time.momentum_formulation || unfinished == "next Newton step";
-        }
-      if (solver.linear_solver == "GMRES")
-        solver.gmres_directions = prm.get_integer("GMRES directions");
-      return solver;
-    }
-
-    template <int dim>
-    ProbeSpec
-    read_probe(const ParameterHandler &prm,
-               const std::string      &name,
-               const Constants        &constants)
-    {
-      const std::vector<std::string> kinds = {
-        "point", "largest", "smallest", "spread", "mean", "extent", "motion"};
-      const std::string kind = prm.get("Kind");
-
-      ProbeSpec probe;
-      probe.name = name;
-      probe.kind = static_cast<ProbeSpec::Kind>(
-        std::find(kinds.begin(), kinds.end(), kind) - kinds.begin());
-      if (kind == "point")
-        probe.position = get_numbers(prm, "Position", dim);
-      else if (kind == "motion")
-        probe.of = prm.get("Of");
-      else
-        {
-          probe.bodies = split_names(prm.get("Bodies"));
-          const std::shared_ptr<FunctionParser<dim>> where =
-            read_expressions<dim>(prm, "Where", 1, false, constants);
-          if (where)
-            probe.where = [where](const double *initial_position) {
-              dealii::Point<dim> place;
-              std::copy_n(initial_position, dim, place.begin_raw());
-              return where->value(place);
-            };
-        }
-      if (kind != "motion" && kind != "extent")
-        probe.field = prm.get("Field");
-      probe.component = prm.get_integer("Component");
-      probe.factor    = prm.get_double("Factor");
-      return probe;
-    }
-
-    template <int dim>
-    OutputSpec
-    read_output(ParameterHandler &prm, const Constants &constants)
-    {
-      OutputSpec output;
-      output.directory        = prm.get("Directory");
-      output.pictures         = prm.get_bool("Pictures");
-      output.picture_interval = 0;
-      output.picture_steps    = 1;
-      output.row_steps        = prm.get_integer("Steps between rows");
-      if (output.pictures)
-        {
-          output.picture_interval = prm.get_double("Time between pictures");
-          if (output.picture_interval == 0)
-            output.picture_steps = prm.get_integer("Steps between pictures");
-          output.point_fields = split_names(prm.get("Point fields"));
-        }
-      for (const auto &name : split_names(prm.get("Probes")))
-        in_section(prm, name, [&]() {
-          output.probes.push_back(read_probe<dim>(prm, name, constants));
-        });
-      for (const auto &name : split_names(prm.get("Reactions")))
-        in_section(prm, name, [&]() {
-          output.reactions.push_back({name,
-                                      prm.get("On"),
-                                      get_numbers(prm, "Direction", dim),
-                                      prm.get_double("Factor")});
-        });
-      return output;
-    }
-
-    std::string
-    join(const std::vector<std::string> &names)
-    {
-      std::string all;
-      for (const auto &name : names)
-        all += (all.empty() ? "" : ", ") + name;
-      return all.empty() ? "none" : all;
-    }
-
-    /** What a law can be asked for. */
-    void
-    check_law(const Material    &material,
-              const std::string &law,
-              const GeometryKind geometry)
-    {
-      const bool plane_stress = geometry == GeometryKind::plane_stress;
-      if (plane_stress && !material.is_solid())
-        throw InputError("Law",
-                         "found '" + law +
-                           "', allowed in plane stress are laws of solids: "
-                           "nothing holds the thickness of a fluid");
-      if (!material.average_volume)
-        return;
-      if (plane_stress)
-        throw InputError("F-bar",
-                         "found 'true', allowed in plane stress is false: "
-                         "there the thickness keeps the volume, nothing locks");
-      if (material.form() != Material::Form::spatial)
-        throw InputError("F-bar",
-                         "found 'true', allowed with the law '" + law +
-                           "' is false: the average is a derivative of the "
-                           "energy of F, which this law does not have");
-    }
-
-    /** What no single section can tell. */
-    template <int dim>
-    void
-    check(const Scene<dim> &scene)
-    {
-      bool deformable = false;
-      for (const auto &body : scene.bodies)
-        {
-          deformable = deformable || !body.rigid;
-          const auto box =
-            body.shape ? body.shape->bounding_box() : std::nullopt;
-          if (!box || scene.grid.method == GridMethod::lagrangian)
-            continue;
-          for (unsigned int d = 0; d < dim; ++d)
-            {
-              const double lower = box->lower_bound(d),
-                           upper = box->upper_bound(d);
-              const double slack = 1e-10 * (upper - lower);
-              if (lower < scene.grid.lower_corner[d] - slack ||
-                  upper > scene.grid.upper_corner[d] + slack)
-                throw InputError(
-                  "Bodies/" + body.name + "/Shape",
-                  "body '" + body.name + "' reaches from " +
-                    std::to_string(lower) + " to " + std::to_string(upper) +
-                    " m in direction " + "xyz"[d] + ", allowed is the grid's " +
-                    std::to_string(scene.grid.lower_corner[d]) + " to " +
-                    std::to_string(scene.grid.upper_corner[d]) + " m");
-            }
-        }
-      if (!deformable)
-        throw InputError("Bodies/Names",
-                         "found no deformable body, allowed is at least one");
-      if (scene.geometry == GeometryKind::axisymmetric &&
-          scene.grid.lower_corner[0] < 0)
-        throw InputError("Grid/Lower corner",
-                         "found a negative radius, allowed is r >= 0");
-
-      for (const auto &body : scene.bodies)
-        if (!body.rigid && scene.solver.linear_solver == "CG" &&
-            !body.material->has_symmetric_tangent())
-          throw InputError("Solver/Linear solver",
-                           "found 'CG', which needs a symmetric matrix, but "
-                           "the law of body '" +
-                             body.name +
-                             "' has none: allowed are GMRES, direct");
-
-      unsigned int movers = 0;
-      for (unsigned int f = 0; f < 2 * dim; ++f)
-        if (scene.faces[f].moves_grid && ++movers > 1)
-          throw InputError("Boundary conditions/" + face_names()[f] +
-                             "/Moves the grid",
-                           "found a second face that moves the grid, allowed "
-                           "is one");
-
-      std::vector<std::string> carriers, movable, deformables;
-      for (const auto &face : scene.faces)
-        if (std::count(face.constrained.begin(), face.constrained.end(), true))
-          {
-            carriers.push_back(face.name);
-            if (face.moves_grid)
-              movable.push_back(face.name);
-          }
-      for (const auto &body : scene.bodies)
-        if (body.rigid)
-          {
-            carriers.push_back(body.name);
-            movable.push_back(body.name);
-          }
-        else
-          deformables.push_back(body.name);
-      const auto require = [](const std::vector<std::string> &allowed,
-                              const std::string              &found,
-                              const std::string              &entry) {
-        if (std::find(allowed.begin(), allowed.end(), found) == allowed.end())
-          throw InputError(entry,
-                           "found '" + found +
-                             "', allowed are: " + join(allowed));
-      };
-      for (const auto &traction : scene.tractions)
-        require(deformables, traction.body, "Loads/" + traction.name + "/Body");
-      for (const auto &reaction : scene.output.reactions)
-        require(carriers, reaction.on, "Output/" + reaction.name + "/On");
-      for (const auto &probe : scene.output.probes)
-        {
-          if (probe.kind == ProbeSpec::Kind::motion)
-            require(movable, probe.of, "Output/" + probe.name + "/Of");
-          for (const auto &body : probe.bodies)
-            require(deformables, body, "Output/" + probe.name + "/Bodies");
-          if (probe.component >= dim &&
-              (probe.kind == ProbeSpec::Kind::extent ||
-               probe.kind == ProbeSpec::Kind::motion))
-            throw InputError("Output/" + probe.name + "/Component",
-                             "found " + std::to_string(probe.component) +
-                               ", allowed is less than " + std::to_string(dim));
-        }
-    }
   } // namespace
 
   int
@@ -655,7 +353,11 @@ namespace impm
       scene.references =
         read_references<dim>(prm, scene.constants, parameter_file);
     });
-    check(scene);
+    check_scene(scene);
+    if (scene.time.integrator == "theta" && scene.time.theta == 0)
+      scene.warnings.push_back(
+        "with Theta = 0 steps are explicit, so that the sections Solver and "
+        "Stabilization do nothing; 'Integrator = explicit' is cheaper");
     // Nothing else holds what no body and no other shape uses.
     for (const auto &[name, shape] : shapes)
       if (shape.use_count() == 1)

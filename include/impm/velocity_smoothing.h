@@ -13,14 +13,14 @@ namespace impm
    * with the grid's increment u as always, but their strain comes from a
    * velocity that has been through the points (eq. 3.2.6 and 3.2.7):
    *
-   *   v_p^L = v_p + sum_I N_I (u / dt - v)_I,   m_I v_I^L = sum_p m_p N_I
-   *   v_p^L,
+   *   v_p^L     = v_p + sum_I N_I (u / dt - v)_I,
+   *   m_I v_I^L = sum_p m_p N_I v_p^L,
    *
    * so that the strain's increment is s(u) = dt v + A (u - dt v), where
    * A = M^-1 S^T m S averages over the points around a node. A node with
    * little mass then has little to say. What a face or a rigid body prescribes
-   * holds for both; s is linear in u but its A has no symmetry with M^-1 in
-   * it, so the tangent has none.
+   * holds for both. s is affine in u; K A is not symmetric, so neither is the
+   * tangent.
    */
   template <int dim>
   class VelocitySmoothing

@@ -1,0 +1,109 @@
+#include <impm/exceptions.h>
+#include <impm/scene_sections.h>
+
+namespace impm
+{
+  using dealii::ParameterHandler;
+
+  TimeSpec
+  read_time(const ParameterHandler &prm, const bool lagrangian)
+  {
+    TimeSpec time;
+    time.integrator = prm.get("Integrator");
+    if (time.integrator == "theta")
+      time.theta = prm.get_double("Theta");
+    if (time.integrator == "explicit")
+      time.theta = 0;
+    if (!lagrangian && time.integrator != "quasi-static")
+      time.momentum_formulation = prm.get("Formulation") == "momentum";
+    if (time.integrator == "Newmark")
+      {
+        time.beta               = prm.get_double("Beta");
+        time.gamma              = prm.get_double("Gamma");
+        time.keeps_acceleration = prm.get("Acceleration from") == "points";
+      }
+    if (lagrangian)
+      time.transfer = TransferKind::pic; // points only show the motion
+    else if (time.integrator != "quasi-static")
+      {
+        const std::string transfer = prm.get("Transfer");
+        time.transfer              = transfer == "FLIP" ? TransferKind::flip :
+                                     transfer == "PIC"  ? TransferKind::pic :
+                                                          TransferKind::apic;
+        if (time.momentum_formulation && transfer != "FLIP")
+          throw InputError("Transfer",
+                           "found '" + transfer +
+                             "', allowed in the momentum formulation, which "
+                             "maps changes of velocity, is FLIP");
+      }
+    time.end = prm.get_double("End time");
+    if (time.integrator != "quasi-static")
+      time.cfl_number = prm.get_double("CFL number");
+    const std::string step_entry =
+      time.cfl_number > 0 ? "CFL number" : "Time step";
+    time.step         = prm.get_double(step_entry);
+    time.growth       = prm.get_double("Growth");
+    time.largest_step = time.step;
+    if (!prm.get("Largest time step").empty())
+      time.largest_step = get_numbers(prm, "Largest time step", 1)[0];
+    if (time.largest_step < time.step)
+      throw InputError("Largest time step",
+                       "found '" + prm.get("Largest time step") +
+                         "', allowed is at least '" + step_entry +
+                         "' = " + prm.get(step_entry));
+    if (time.growth > 1 && time.largest_step == time.step)
+      throw InputError("Growth",
+                       "found '" + prm.get("Growth") +
+                         "', which does nothing without a 'Largest time "
+                         "step' above '" +
+                         step_entry + "'");
+    time.smallest_step           = prm.get_double("Smallest time step");
+    time.largest_number_of_steps = prm.get_integer("Largest number of steps");
+    return time;
+  }
+
+  SolverSpec
+  read_solver(const ParameterHandler &prm, const TimeSpec &time)
+  {
+    SolverSpec        solver;
+    const std::string scale  = prm.get("Residual scale");
+    solver.residual_scale    = scale == "body" ? ResidualScale::body :
+                               scale == "cell" ? ResidualScale::cell :
+                                                 ResidualScale::momentum;
+    solver.newton_tolerance  = prm.get_double("Newton tolerance");
+    solver.newton_reduction  = prm.get_double("Newton reduction");
+    solver.newton_iterations = prm.get_integer("Newton iterations");
+    solver.line_search       = prm.get_bool("Line search");
+    solver.linear_solver     = prm.get("Linear solver");
+    if (time.momentum_formulation && solver.linear_solver != "GMRES")
+      throw InputError("Linear solver",
+                       "found '" + solver.linear_solver +
+                         "', allowed with the momentum formulation, whose "
+                         "tangent is unsymmetric and never a matrix, is "
+                         "GMRES");
+    if (solver.linear_solver != "direct")
+      {
+        solver.linear_tolerance  = prm.get_double("Linear tolerance");
+        solver.linear_iterations = prm.get_integer("Linear iterations");
+        solver.preconditioner    = prm.get("Preconditioner");
+        const std::string kind   = prm.get("Operator");
+        solver.tangent           = kind == "matrix" ? TangentKind::matrix :
+                                   kind == "matrix-free" ?
+                                                      TangentKind::matrix_free :
+                                                      TangentKind::difference_quotient;
+        if (solver.tangent == TangentKind::difference_quotient)
+          solver.difference_step = prm.get_double("Difference step");
+        const std::string unfinished = prm.get("Unfinished solves");
+        if (time.momentum_formulation && unfinished == "direct solver")
+          throw InputError("Unfinished solves",
+                           "found 'direct solver', allowed with the momentum "
+                           "formulation, whose tangent is never a matrix, is "
+                           "'next Newton step'");
+        solver.accept_unfinished =
+          time.momentum_formulation || unfinished == "next Newton step";
+      }
+    if (solver.linear_solver == "GMRES")
+      solver.gmres_directions = prm.get_integer("GMRES directions");
+    return solver;
+  }
+} // namespace impm

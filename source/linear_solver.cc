@@ -1,8 +1,6 @@
 #include <deal.II/lac/precondition.h>
 #include <deal.II/lac/solver_cg.h>
-#include <deal.II/lac/solver_control.h>
 #include <deal.II/lac/solver_gmres.h>
-#include <deal.II/lac/trilinos_solver.h>
 
 #include <impm/exceptions.h>
 #include <impm/linear_solver.h>
@@ -190,22 +188,27 @@ namespace impm
     matrix_is_current = true;
     try
       {
-        SolverControl                                  control;
-        TrilinosWrappers::SolverDirect::AdditionalData data;
-        TrilinosWrappers::SolverDirect                 solver(control, data);
-        solver.solve(matrix, x, b);
+        if (!factors)
+          {
+            factors = std::make_unique<TrilinosWrappers::SolverDirect>(
+              direct_control, TrilinosWrappers::SolverDirect::AdditionalData());
+            factors->initialize(matrix);
+          }
+        factors->solve(x, b);
       }
     catch (const dealii::ExceptionBase &)
       {
+        factors.reset();
         throw ComputationError("the linear system is singular");
       }
   }
 
   template <int dim>
-  unsigned int
-  LinearSolver<dim>::solve(Vector &x, const Vector &b, const double tolerance)
+  void
+  LinearSolver<dim>::take_tangent()
   {
-    x                 = 0;
+    ++n_tangents;
+    factors.reset();
     matrix_is_current = false;
     if (needs_matrix())
       {
@@ -213,12 +216,20 @@ namespace impm
         balance.assemble(matrix);
         matrix_is_current = true;
       }
+    if (spec.linear_solver != "direct")
+      update_preconditioner();
+  }
+
+  template <int dim>
+  unsigned int
+  LinearSolver<dim>::solve(Vector &x, const Vector &b, const double tolerance)
+  {
+    x = 0;
     if (spec.linear_solver == "direct")
       {
         solve_directly(x, b);
         return 1;
       }
-    update_preconditioner();
     try
       {
         TimerOutput::Scope scope(timer, "iterative solver");

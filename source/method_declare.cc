@@ -116,28 +116,66 @@ namespace impm
         prm.leave_subsection();
         return;
       }
-    prm.declare_entry("Residual scale",
-                      "body",
-                      Patterns::Selection("body|cell|momentum"),
-                      "Unit of the norm of residuals. Body: that of the "
-                      "forces of all material at a strain of one. Cell: "
-                      "largest Young's modulus times dx dy (dz) of the "
-                      "smallest cell, of a radian if axisymmetric (Sulsky & "
-                      "Kaul 2004, section 3.2.2). "
-                      "Momentum: force times time step in N s (their section "
-                      "3.1).");
-    prm.declare_entry("Newton tolerance",
-                      "1e-7",
-                      Patterns::Double(tiny, 1),
-                      "Norm of the residual in units of the residual scale; "
-                      "with that of the body of the order of an error in "
-                      "strain.");
-    prm.declare_entry("Newton reduction",
-                      "1e-3",
-                      Patterns::Double(tiny, 1),
-                      "And over that at the start of the step: where little "
-                      "happens in a step, it must be solved, too. 1: the "
-                      "tolerance alone, so that the first guess may do.");
+    prm.declare_entry("Nonlinear solver",
+                      "Newton",
+                      Patterns::Selection("Newton|BFGS"),
+                      "BFGS corrects a tangent that is kept by what later "
+                      "iterations show (Matthies & Strang 1979), instead of "
+                      "taking a new one in each.");
+    if (may_be(chosen("Solver/Nonlinear solver", "Newton"), "BFGS"))
+      prm.declare_entry("BFGS updates",
+                        "10",
+                        Patterns::Integer(1),
+                        "Of a tangent before a new one is taken.");
+    prm.declare_entry("Convergence",
+                      "residual",
+                      Patterns::Selection("residual|increment and energy"),
+                      "What is small when Newton's method stops: the "
+                      "residual, or what an iteration changes of the "
+                      "increment, and with it of the energy, in both over "
+                      "the most in this step (Guilkey & Weiss 2003, eq. 13).");
+    const auto convergence = chosen("Solver/Convergence", "residual");
+    if (may_be(convergence, "increment and energy"))
+      {
+        prm.declare_entry("Displacement tolerance",
+                          "1e-4",
+                          Patterns::Double(tiny, 1),
+                          "Norm of an iteration's change over the largest one "
+                          "in this step.");
+        prm.declare_entry("Energy tolerance",
+                          "1e-8",
+                          Patterns::Double(tiny, 1),
+                          "Product of an iteration's change and residual over "
+                          "that of the first iteration.");
+      }
+    if (may_be(convergence, "residual"))
+      {
+        prm.declare_entry(
+          "Residual scale",
+          "body",
+          Patterns::Selection("body|cell|momentum"),
+          "Unit of the norm of residuals. Body: that of the "
+          "forces of all material at a strain of one. Cell: "
+          "largest Young's modulus times dx dy (dz) of the "
+          "smallest cell, of a radian if axisymmetric (Sulsky & "
+          "Kaul 2004, section 3.2.2). "
+          "Momentum: force times time step in N s (their section "
+          "3.1).");
+        prm.declare_entry(
+          "Newton tolerance",
+          "1e-7",
+          Patterns::Double(tiny, 1),
+          "Norm of the residual in units of the residual scale; "
+          "with that of the body of the order of an error in "
+          "strain.");
+        prm.declare_entry(
+          "Newton reduction",
+          "1e-3",
+          Patterns::Double(tiny, 1),
+          "And over that at the start of the step: where little "
+          "happens in a step, it must be solved, too. 1: the "
+          "tolerance alone, so that the first guess may do.");
+      }
     prm.declare_entry("Newton iterations",
                       "50",
                       Patterns::Integer(1),

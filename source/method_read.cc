@@ -65,13 +65,23 @@ namespace impm
   SolverSpec
   read_solver(const ParameterHandler &prm, const TimeSpec &time)
   {
-    SolverSpec        solver;
-    const std::string scale  = prm.get("Residual scale");
-    solver.residual_scale    = scale == "body" ? ResidualScale::body :
-                               scale == "cell" ? ResidualScale::cell :
-                                                 ResidualScale::momentum;
-    solver.newton_tolerance  = prm.get_double("Newton tolerance");
-    solver.newton_reduction  = prm.get_double("Newton reduction");
+    SolverSpec solver;
+    if (prm.get("Convergence") == "residual")
+      {
+        const std::string scale = prm.get("Residual scale");
+        solver.residual_scale   = scale == "body" ? ResidualScale::body :
+                                  scale == "cell" ? ResidualScale::cell :
+                                                    ResidualScale::momentum;
+        solver.newton_tolerance = prm.get_double("Newton tolerance");
+        solver.newton_reduction = prm.get_double("Newton reduction");
+      }
+    else
+      {
+        solver.convergence = Convergence::increment_and_energy;
+        solver.displacement_tolerance =
+          prm.get_double("Displacement tolerance");
+        solver.energy_tolerance = prm.get_double("Energy tolerance");
+      }
     solver.newton_iterations = prm.get_integer("Newton iterations");
     solver.line_search       = prm.get_bool("Line search");
     solver.linear_solver     = prm.get("Linear solver");
@@ -104,6 +114,21 @@ namespace impm
       }
     if (solver.linear_solver == "GMRES")
       solver.gmres_directions = prm.get_integer("GMRES directions");
+    if (prm.get("Nonlinear solver") == "BFGS")
+      {
+        solver.bfgs_updates = prm.get_integer("BFGS updates");
+        if (time.momentum_formulation)
+          throw InputError("Nonlinear solver",
+                           "found 'BFGS', which keeps a symmetric matrix, "
+                           "allowed with the momentum formulation, whose "
+                           "tangent is unsymmetric, is 'Newton'");
+        if (solver.linear_solver != "direct" &&
+            solver.tangent != TangentKind::matrix)
+          throw InputError("Operator",
+                           "found '" + prm.get("Operator") +
+                             "', allowed with 'Nonlinear solver = BFGS', "
+                             "which keeps a tangent, is 'matrix'");
+      }
     return solver;
   }
 } // namespace impm

@@ -9,14 +9,23 @@ namespace impm
   RigidBodies<dim>::RigidBodies(const Scene<dim>          &scene,
                                 const BackgroundGrid<dim> &grid)
   {
+    std::vector<BoundingBox<dim>> boxes;
     for (const auto &spec : scene.bodies)
       if (spec.rigid)
         {
           auto points = std::make_unique<SortedParticles<dim>>(grid, 0);
-          points->insert(seed_body(scene, spec, grid));
+          if (grid.is_lagrangian)
+            boxes.push_back(*spec.shape->bounding_box());
+          else
+            points->insert(seed_body(scene, spec, grid));
           points->sort();
           bodies.push_back({&spec, std::move(points)});
         }
+    if (!boxes.empty())
+      {
+        contact.emplace(grid, boxes);
+        contact->stick(displacements(0));
+      }
   }
 
   template <int dim>
@@ -37,6 +46,8 @@ namespace impm
   void
   RigidBodies<dim>::move(const double from, const double to)
   {
+    if (contact)
+      contact->stick(displacements(to));
     for (unsigned int b = 0; b < bodies.size(); ++b)
       {
         const auto shift = displacement(b, from, to);
@@ -44,6 +55,30 @@ namespace impm
           particle.set_location(particle.get_location() + shift);
       }
     sort();
+  }
+
+  template <int dim>
+  typename NodeContact<dim>::Shifts
+  RigidBodies<dim>::displacements(const double time) const
+  {
+    typename NodeContact<dim>::Shifts shifts;
+    for (unsigned int b = 0; b < bodies.size(); ++b)
+      shifts.push_back(displacement(b, 0, time));
+    return shifts;
+  }
+
+  template <int dim>
+  double
+  RigidBodies<dim>::first_touch(const Vector            &u,
+                                const std::vector<char> &constrained,
+                                const double             from,
+                                const double             to) const
+  {
+    return contact ? contact->first_touch(u,
+                                          constrained,
+                                          displacements(from),
+                                          displacements(to)) :
+                     1.;
   }
 
   template <int dim>

@@ -77,12 +77,18 @@ namespace impm
                        "found a negative radius, allowed is r >= 0");
 
     for (const auto &body : scene.bodies)
-      if (!body.rigid && scene.solver.linear_solver == "CG" &&
-          !body.material->has_symmetric_tangent())
-        throw InputError("Solver/Linear solver",
-                         "found 'CG', which needs a symmetric matrix, but "
-                         "the law of body '" +
-                           body.name + "' has none: allowed are GMRES, direct");
+      if (!body.rigid && !body.material->has_symmetric_tangent())
+        {
+          const std::string law =
+            ", which needs a symmetric matrix, but the law of body '" +
+            body.name + "' has none: allowed ";
+          if (scene.solver.linear_solver == "CG")
+            throw InputError("Solver/Linear solver",
+                             "found 'CG'" + law + "are GMRES, direct");
+          if (scene.solver.bfgs_updates > 0)
+            throw InputError("Solver/Nonlinear solver",
+                             "found 'BFGS'" + law + "is Newton");
+        }
 
     unsigned int movers = 0;
     for (unsigned int f = 0; f < 2 * dim; ++f)

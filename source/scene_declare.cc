@@ -196,7 +196,8 @@ namespace impm
       prm.declare_entry("Kind",
                         "deformable",
                         Patterns::Selection("deformable|rigid"),
-                        "Rigid bodies move as prescribed.");
+                        "Rigid bodies move as prescribed. Nodes of a "
+                        "Lagrangian grid that reach one stick to it.");
       prm.declare_entry("Points from",
                         "shape",
                         Patterns::Selection("shape|file"),
@@ -207,11 +208,13 @@ namespace impm
                             "",
                             Patterns::Anything(),
                             "Name of a shape of the section Geometry.");
-          prm.declare_entry("Points per cell",
-                            "2",
-                            Patterns::Integer(1, 20),
-                            "In each direction of a cell; Gauss points if the "
-                            "grid is Lagrangian.");
+          if (chosen(path + "Kind", "deformable") == "deformable" ||
+              chosen("Grid/Method", "MPM") != "Lagrangian")
+            prm.declare_entry("Points per cell",
+                              "2",
+                              Patterns::Integer(1, 20),
+                              "In each direction of a cell; Gauss points if "
+                              "the grid is Lagrangian.");
         }
       else
         prm.declare_entry("File",

@@ -150,18 +150,24 @@ namespace impm
       BodySpec<dim> body;
       body.name  = name;
       body.rigid = prm.get("Kind") == "rigid";
-      if (lagrangian && body.rigid)
-        throw InputError("Kind",
-                         "found 'rigid', allowed on a Lagrangian grid is "
-                         "'deformable'");
       if (lagrangian && prm.get("Points from") != "shape")
         throw InputError("Points from",
                          "found 'file', allowed on a Lagrangian grid, where "
                          "points are Gauss points, is 'shape'");
       if (prm.get("Points from") == "shape")
         {
-          body.shape           = pick(shapes, "Shape");
-          body.points_per_cell = prm.get_integer("Points per cell");
+          body.shape = pick(shapes, "Shape");
+          if (lagrangian && body.rigid)
+            {
+              if (!body.shape->is_box())
+                throw InputError("Shape",
+                                 "found '" + prm.get("Shape") +
+                                   "', allowed for a rigid body on a "
+                                   "Lagrangian grid, whose nodes stick to it, "
+                                   "are boxes");
+            }
+          else
+            body.points_per_cell = prm.get_integer("Points per cell");
         }
       else
         body.point_file = prm.get("File");

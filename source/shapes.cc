@@ -43,9 +43,11 @@ namespace impm
       using IsInside = std::function<bool(const Point<dim> &)>;
 
       Region(const IsInside                        &inside,
-             const std::optional<BoundingBox<dim>> &around)
+             const std::optional<BoundingBox<dim>> &around,
+             const bool                             fills_box = false)
         : is_inside(inside)
         , box(around)
+        , fills_box(fills_box)
       {}
 
       bool
@@ -60,9 +62,16 @@ namespace impm
         return box;
       }
 
+      bool
+      is_box() const override
+      {
+        return fills_box;
+      }
+
     private:
       const IsInside                        is_inside;
       const std::optional<BoundingBox<dim>> box;
+      const bool                            fills_box;
     };
 
     /** What may stand in an entry. All have to be set: the defaults match the
@@ -148,7 +157,7 @@ namespace impm
       const auto             is_inside = [box](const Point<dim> &point) {
         return box.point_inside(point, tolerance);
       };
-      return std::make_shared<Region<dim>>(is_inside, box);
+      return std::make_shared<Region<dim>>(is_inside, box, true);
     }
 
     template <int dim>

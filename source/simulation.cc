@@ -159,15 +159,30 @@ namespace impm
       dt = left;
     else if (left < 1.999 * dt)
       dt = left / 2;
+    bool failed = false;
     for (;;)
       {
         const auto result = attempt(dt);
-        if (result.converged)
+        // Nodes must not pass into a rigid body: the first one lands on it.
+        const double part =
+          result.converged ?
+            rigid.first_touch(u,
+                              balance.constraints.is_constrained,
+                              time,
+                              time + dt) :
+            0.5;
+        if (result.converged && part == 1)
           break;
         ++report.step_cuts;
-        console.detail("  step cut at t = " + std::to_string(time) +
-                       ", dt = " + std::to_string(dt) + ": " + result.failure);
-        dt /= 2;
+        console.detail(
+          "  step cut at t = " + std::to_string(time) +
+          ", dt = " + std::to_string(dt) + ": " +
+          (result.converged ? "a node reaches a rigid body" : result.failure));
+        dt *= part;
+        if (result.converged)
+          continue;
+        failed    = true;
+        step_size = dt / unit;
         if (dt < scene.time.smallest_step * scene.time.step * unit)
           {
             std::ostringstream where;
@@ -187,12 +202,10 @@ namespace impm
     report.time         = time;
     report.wall_seconds = wall.wall_time();
 
-    // Grow; after a cut, back to the nominal step first.
-    if (report.step_cuts > 0)
-      step_size = dt / unit;
-    else if (step_size < scene.time.step)
+    // Grow; after a failure, back to the nominal step first.
+    if (!failed && step_size < scene.time.step)
       step_size = std::min(1.5 * step_size, scene.time.step);
-    else
+    else if (!failed)
       step_size =
         std::min(step_size * scene.time.growth, scene.time.largest_step);
 
@@ -225,8 +238,13 @@ namespace impm
   {
     TimerOutput::Scope scope(timer, "move points and grid");
     balance.end_motion(u, end_velocity, end_acceleration);
-    advance_points(
-      balance, scene.time.transfer, u, end_velocity, end_acceleration, points);
+    advance_points(balance,
+                   scene.time,
+                   report.dt,
+                   u,
+                   end_velocity,
+                   end_acceleration,
+                   points);
     balance.carry_motion(grid, u, end_velocity, end_acceleration);
     bool grid_moves = false;
     for (unsigned int f = 0; f < 2 * dim; ++f)
@@ -282,6 +300,7 @@ namespace impm
                {"linear_iterations", sums.linear},
                {"line_searches", sums.line_searches},
                {"step_cuts", sums.cuts},
+               {"tangents", step_solver.linear_solver.n_tangents},
                {"tangent_projections", sums.projections},
                {"solver_fallbacks", step_solver.linear_solver.n_fallbacks},
                {"noise_stops", sums.noise_stops},

@@ -71,6 +71,15 @@ namespace impm
       {
         const unsigned int normal  = rigid.spec(b).slip_normal;
         const unsigned int carrier = 2 * dim + b;
+        if (grid.is_lagrangian)
+          {
+            const auto &holders = rigid.holders_of_nodes();
+            for (unsigned int i = 0; i < carriers.locally_owned_size(); ++i)
+              if (holders[i / dim] == b + 1 &&
+                  (normal == dim || normal == i % dim))
+                carriers.local_element(i) = carrier + 1.;
+            continue;
+          }
         for (const auto &particle : rigid.points(b).particles)
           {
             const auto particle_cell = particle.get_surrounding_cell();

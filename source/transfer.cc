@@ -26,10 +26,41 @@ namespace impm
         values[d] = vector[d];
     }
 
-  } // namespace
+    /**
+     * Adds `factor` times the part of the points' acceleration that the grid
+     * does not see, since the change of its velocity counts but what it does.
+     * It has no momentum.
+     */
+    template <int dim>
+    void
+    add_unseen_acceleration(const MomentumBalance<dim> &balance,
+                            const double                factor,
+                            MaterialPoints<dim>        &points)
+    {
+      std::vector<Tensor<1, dim>> own(points.size()), seen;
+      const auto                 &footprints = balance.footprints();
+      for (unsigned int p = 0; p < points.size(); ++p)
+        own[p] = points.mass(p) * load_vector<dim>(points.fields(p) +
+                                                   points.offset_acceleration);
+      Vector mean;
+      balance.grid.initialize(mean);
+      footprints.spread(own, mean);
+      mean.compress(VectorOperation::add);
+      balance.constraints.condense_hanging(mean);
+      for (unsigned int i = 0; i < mean.locally_owned_size(); ++i)
+        if (balance.mass.local_element(i) > 0)
+          mean.local_element(i) /= balance.mass.local_element(i);
+      balance.constraints.interpolate_hanging(mean);
+      footprints.interpolate(mean, seen);
+      for (unsigned int p = 0; p < points.size(); ++p)
+        {
+          double *velocity = points.fields(p) + points.offset_velocity;
+          store_vector<dim>(load_vector<dim>(velocity) +
+                              factor * (own[p] / points.mass(p) - seen[p]),
+                            velocity);
+        }
+    }
 
-  namespace
-  {
     template <int dim>
     void
     advance_velocities(const MomentumBalance<dim> &balance,
@@ -76,7 +107,8 @@ namespace impm
   template <int dim>
   void
   advance_points(const MomentumBalance<dim> &balance,
-                 const TransferKind          kind,
+                 const TimeSpec             &time,
+                 const double                dt,
                  const Vector               &u,
                  const Vector               &end_velocity,
                  const Vector               &end_acceleration,
@@ -104,7 +136,9 @@ namespace impm
         ++p;
       }
     if (points.offset_velocity > 0)
-      advance_velocities(balance, kind, end_velocity, points);
+      advance_velocities(balance, time.transfer, end_velocity, points);
+    if (points.offset_acceleration > 0 && time.transfer == TransferKind::flip)
+      add_unseen_acceleration(balance, (1 - time.gamma) * dt, points);
     if (points.offset_acceleration > 0)
       {
         balance.footprints().interpolate(end_acceleration, motion);
@@ -172,7 +206,8 @@ namespace impm
 
   template void
   advance_points(const MomentumBalance<2> &,
-                 TransferKind,
+                 const TimeSpec &,
+                 double,
                  const Vector &,
                  const Vector &,
                  const Vector &,
@@ -189,7 +224,8 @@ namespace impm
                      const std::array<double, 4> &);
   template void
   advance_points(const MomentumBalance<3> &,
-                 TransferKind,
+                 const TimeSpec &,
+                 double,
                  const Vector &,
                  const Vector &,
                  const Vector &,

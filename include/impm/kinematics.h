@@ -69,9 +69,11 @@ namespace impm
     }
 
     /**
-     * The material's and the geometric stiffness: how tau L^-T, L = 1 + g,
-     * changes with g. c_ijkl + delta_ik tau_jl, the same from the full
-     * tangent as a_ijkl - tau_il delta_jk, and c_ijkl alone if linearized.
+     * How tau L^-T, L = 1 + g, changes with g: c_ijkl + delta_ik tau_jl, the
+     * material's stiffness, whose sum over the points is K_mat, and that of
+     * stress that turns, K_geo (Guilkey & Weiss 2003, section 3.3). The same
+     * from the full tangent is a_ijkl - tau_il delta_jk (Newmark note);
+     * linearized there is no K_geo.
      */
     void
     spatial_tangent(const Material::Response &response,
@@ -85,7 +87,9 @@ namespace impm
         {
           case Material::Form::spatial:
             fill(matrix, [&](auto i, auto j, auto k, auto l) {
-              return c[i][j][k][l] + (i == k ? tau[j][l] : 0.);
+              const double material  = c[i][j][k][l];
+              const double geometric = i == k ? tau[j][l] : 0.;
+              return material + geometric;
             });
             break;
           case Material::Form::full:

@@ -3,10 +3,14 @@
 
 #include <deal.II/base/timer.h>
 
+#include <deal.II/lac/solver_control.h>
 #include <deal.II/lac/trilinos_precondition.h>
+#include <deal.II/lac/trilinos_solver.h>
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 
 #include <impm/difference_quotient.h>
+
+#include <memory>
 
 namespace impm
 {
@@ -37,8 +41,15 @@ namespace impm
     vmult_lift(Vector &dst, const Vector &src);
 
     /**
-     * Solves with the tangent as it is now, to the residual `tolerance` times
-     * that of zero (a direct solver to round-off). Returns the number of
+     * Takes the tangent as it is now: assembles it, makes the preconditioner,
+     * as far as they are wanted. Collective.
+     */
+    void
+    take_tangent();
+
+    /**
+     * Solves with the tangent that was taken last, to the residual `tolerance`
+     * times that of zero (a direct solver to round-off). Returns the number of
      * iterations. Throws ComputationError when even the direct solver fails,
      * LinearizationError when there is no tangent. Collective.
      */
@@ -46,6 +57,7 @@ namespace impm
     solve(Vector &x, const Vector &b, double tolerance);
 
     unsigned int n_fallbacks = 0; ///< to the direct solver, all steps
+    unsigned int n_tangents  = 0; ///< taken, all steps
 
   private:
     void
@@ -80,8 +92,13 @@ namespace impm
     DifferenceQuotient<dim> quotient;
     dealii::TimerOutput    &timer;
 
-    bool                                      matrix_is_current = false;
-    dealii::TrilinosWrappers::SparseMatrix    matrix;
+    bool                                   matrix_is_current = false;
+    dealii::TrilinosWrappers::SparseMatrix matrix;
+
+    /** Of the matrix as it is, or null. */
+    std::unique_ptr<dealii::TrilinosWrappers::SolverDirect> factors;
+    dealii::SolverControl                                   direct_control;
+
     dealii::TrilinosWrappers::PreconditionAMG amg;
     std::vector<double>                       rigid_body_modes;
     Vector                                    inverse_diagonal;

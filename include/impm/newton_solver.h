@@ -1,6 +1,8 @@
 #ifndef impm_newton_solver_h
 #define impm_newton_solver_h
 
+#include <impm/bfgs.h>
+#include <impm/convergence_test.h>
 #include <impm/linear_solver.h>
 
 #include <string>
@@ -9,8 +11,9 @@
 namespace impm
 {
   /**
-   * Newton's method with backtracking. Where the laws have a potential, a step
-   * must lower the incremental potential (Armijo); else, the residual.
+   * Newton's method with backtracking, or BFGS, which goes on with a tangent
+   * that it corrects. Where the laws have a potential, a step must lower the
+   * incremental potential (Armijo); else, the residual.
    */
   template <int dim>
   class NewtonSolver
@@ -47,23 +50,48 @@ namespace impm
   private:
     using Evaluation = typename MomentumBalance<dim>::Evaluation;
 
+    bool
+    uses_bfgs() const
+    {
+      return spec.bfgs_updates > 0;
+    }
+
     Evaluation
-    evaluate(const Vector &u);
+    evaluate(const Vector &u, bool with_tangent);
 
     /** From a guess to a first iterate that satisfies the constraints. */
     void
     start(Vector &u, Result &result, Evaluation &now);
 
-    bool
-    is_small(const Evaluation &evaluation) const;
+    /** Takes the tangent at u, where the balance stands evaluated. */
+    void
+    take_tangent(const Vector &u);
+
+    /** Solves for `step`; returns its product with the residual (N m). */
+    double
+    solve_for_step(Result &result);
+
+    /** Finds a `step` from u; returns its slope, negative if it descends. */
+    double
+    find_step(const Vector &u, Result &result);
+
+    /**
+     * Goes along `step` to a `trial` that is better than u, whose evaluation
+     * is `now`, and evaluates it there. Returns the length, 0 if there is none.
+     */
+    double
+    search(const Vector &u, double slope, Evaluation &now);
 
     const SolverSpec     &spec;
     MomentumBalance<dim> &balance;
     LinearSolver<dim>    &linear_solver;
     const bool            has_potential;
     dealii::TimerOutput  &timer;
+    ConvergenceTest       test;
+    Bfgs                  bfgs;
+    bool                  has_tangent = false; ///< taken in this step
+    bool                  is_fresh    = false; ///< and at this iterate
     Vector                step, trial, right_side;
-    double                first_residual = 0; ///< what the step has to solve
   };
 } // namespace impm
 

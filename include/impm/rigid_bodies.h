@@ -2,16 +2,19 @@
 #define impm_rigid_bodies_h
 
 #include <impm/material_points.h>
+#include <impm/node_contact.h>
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace impm
 {
   /**
-   * Bodies of points that move as prescribed and impose their motion on every
-   * node of the cells that they touch (Sulsky & Kaul 2004, sec. 3.2.7). They
-   * only move; they have no fields.
+   * Bodies that move as prescribed. They are made of points, which impose their
+   * motion on every node of the cells that they touch (Sulsky & Kaul 2004, sec.
+   * 3.2.7) and have no fields. To a Lagrangian grid they are boxes to which its
+   * nodes stick.
    */
   template <int dim>
   class RigidBodies
@@ -35,9 +38,29 @@ namespace impm
     dealii::Tensor<1, dim>
     displacement(unsigned int body, double from, double to) const;
 
-    /** Moves the points and sorts them. Collective. */
+    /**
+     * Moves the points and sorts them; nodes that have come to a box stick to
+     * it. Collective.
+     */
     void
     move(double from, double to);
+
+    /**
+     * The part of a step between two times after which the increment `u` brings
+     * the first free node to a box; 1 if there is none. Collective.
+     */
+    double
+    first_touch(const Vector            &u,
+                const std::vector<char> &constrained,
+                double                   from,
+                double                   to) const;
+
+    /** By local node, one more than the body that it sticks to; 0: none. */
+    const std::vector<unsigned int> &
+    holders_of_nodes() const
+    {
+      return contact->boxes_of_nodes();
+    }
 
     /** Sorts the points after the grid has moved. Collective. */
     void
@@ -50,12 +73,17 @@ namespace impm
     }
 
   private:
+    /** Displacements of all bodies since the start (m). */
+    typename NodeContact<dim>::Shifts
+    displacements(double time) const;
+
     struct Body
     {
       const BodySpec<dim>                  *spec;
       std::unique_ptr<SortedParticles<dim>> points;
     };
-    std::vector<Body> bodies;
+    std::vector<Body>               bodies;
+    std::optional<NodeContact<dim>> contact; ///< of a Lagrangian grid
   };
 } // namespace impm
 

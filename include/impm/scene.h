@@ -165,12 +165,22 @@ namespace impm
     difference_quotient ///< of residuals
   };
 
+  /** What Newton's method is judged by. */
+  enum class Convergence
+  {
+    residual,
+    increment_and_energy ///< Guilkey & Weiss (2003), eq. 13
+  };
+
   struct SolverSpec
   {
-    ResidualScale residual_scale = ResidualScale::body;
-    double        newton_tolerance;
-    double        newton_reduction;
+    Convergence   convergence            = Convergence::residual;
+    ResidualScale residual_scale         = ResidualScale::body;
+    double        newton_tolerance       = 0;
+    double        newton_reduction       = 0;
+    double        displacement_tolerance = 0, energy_tolerance = 0;
     unsigned int  newton_iterations;
+    unsigned int  bfgs_updates = 0; ///< of a tangent; 0: Newton's method
     bool          line_search;
     std::string   linear_solver; ///< CG, GMRES, direct
     double        linear_tolerance  = 0;

@@ -29,6 +29,10 @@ namespace impm
      * not). */
     virtual std::optional<dealii::BoundingBox<dim>>
     bounding_box() const = 0;
+
+    /** Whether the shape fills that box. */
+    virtual bool
+    is_box() const = 0;
   };
 
   template <int dim>

@@ -11,7 +11,9 @@ namespace impm
    * they carry of the motion:
    *
    *   FLIP  the velocity takes the change of the grid's (Sulsky & Kaul 2004,
-   *         eq. 2.3.2 and 2.3.3),
+   *         eq. 2.3.2 and 2.3.3); where points carry an acceleration, with
+   *         that in place of the grid's at the start of the step of `dt`
+   *         (Guilkey & Weiss 2003, section 3.3, step 7),
    *   PIC   it becomes the grid's,
    *   APIC  so, and the point keeps its gradient (Jiang et al. 2015).
    *
@@ -20,7 +22,8 @@ namespace impm
   template <int dim>
   void
   advance_points(const MomentumBalance<dim> &balance,
-                 TransferKind                kind,
+                 const TimeSpec             &time,
+                 double                      dt,
                  const Vector               &u,
                  const Vector               &end_velocity,
                  const Vector               &end_acceleration,

@@ -100,3 +100,85 @@ TEST(NewtonSolverMpi, IterativeSolversFindTheSameState)
             << solver << ' ' << preconditioner << ' ' << how;
         }
 }
+
+
+// Where a tangent is kept and corrected, the same state is found, with fewer
+// tangents than iterations.
+TEST(NewtonSolverMpi, BfgsFindsTheSameState)
+{
+  const Overrides press = {"Boundary conditions/bottom/Type=fixed",
+                           "Boundary conditions/top/Type=displacement",
+                           "Boundary conditions/top/Value=0; -0.05*t"};
+  const auto check = [&](const std::string &kind, const Overrides &overrides) {
+    SCOPED_TRACE(kind + overrides.front());
+    Model<2> newton(block_scene(kind), press + overrides);
+    auto     reference = newton.vector();
+    ASSERT_TRUE(newton.solve(reference).converged);
+    for (const std::string solver : {"direct", "CG"})
+      {
+        auto all = press + overrides +
+                   Overrides{"Solver/Nonlinear solver=BFGS",
+                             "Solver/Linear solver=" + solver};
+        if (solver == "CG")
+          all.push_back("Solver/Linear tolerance=1e-8");
+        Model<2>   model(block_scene(kind), all);
+        auto       u      = model.vector();
+        const auto result = model.solve(u);
+        ASSERT_TRUE(result.converged) << result.failure;
+        EXPECT_LT(model.step_solver.linear_solver.n_tangents,
+                  result.iterations / 2);
+        u -= reference;
+        EXPECT_LT(u.linfty_norm(), 1e-11);
+      }
+  };
+  check("plane strain", plastic + refined);
+  check("axisymmetric", plastic);
+  check("plane stress", {"Materials/rubber/Law=neo-Hookean"});
+  check("plane strain",
+        {"Materials/rubber/Law=decoupled neo-Hookean",
+         "Materials/rubber/F-bar=true",
+         "Grid/Method=GIMP"});
+  check("plane strain", with_inertia + plastic);
+}
+
+
+// Guilkey & Weiss (2003), eq. 13. Newton's method converges quadratically, so
+// the last change of 1e-6 leaves an error of 1e-12.
+TEST(NewtonSolverMpi, ConvergenceOfIncrementAndEnergy)
+{
+  const Overrides press = {"Boundary conditions/bottom/Type=fixed",
+                           "Boundary conditions/top/Type=displacement",
+                           "Boundary conditions/top/Value=0; -0.05*t"};
+  Model<2>        reference(block_scene("plane strain"), press + refined);
+  auto            exact = reference.vector();
+  ASSERT_TRUE(reference.solve(exact).converged);
+  // The other criterion has no residual to look at.
+  auto       text = block_scene("plane strain");
+  const auto from = text.find("  set Newton tolerance");
+  text.erase(from, text.find('\n', from) + 1 - from);
+  std::vector<unsigned int> iterations;
+  for (const auto &[displacement, energy] :
+       std::vector<std::pair<std::string, std::string>>{{"0.5", "0.5"},
+                                                        {"0.5", "1e-12"},
+                                                        {"1e-6", "1"}})
+    {
+      Model<2>   model(text,
+                     press + refined +
+                       Overrides{"Solver/Convergence=increment and energy",
+                                 "Solver/Displacement tolerance=" +
+                                   displacement,
+                                 "Solver/Energy tolerance=" + energy});
+      auto       u      = model.vector();
+      const auto result = model.solve(u);
+      ASSERT_TRUE(result.converged) << result.failure;
+      EXPECT_FALSE(result.stopped_at_noise);
+      iterations.push_back(result.iterations);
+      u -= exact;
+      if (iterations.size() > 1)
+        EXPECT_LT(u.linfty_norm(), 1e-9);
+    }
+  // Never on the first iteration, whose change is the largest.
+  EXPECT_EQ(iterations[0], 2u);
+  EXPECT_GT(iterations[1], 2u);
+  EXPECT_GT(iterations[2], 2u);
+}

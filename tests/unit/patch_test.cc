@@ -277,7 +277,8 @@ namespace
     for (unsigned int p = 0; p < model.points.size(); ++p)
       stresses.push_back(read_stress(p));
     advance_points(balance,
-                   TransferKind::flip,
+                   model.scene.time,
+                   model.dt,
                    model.vector(),
                    model.vector(),
                    model.vector(),

@@ -267,7 +267,7 @@ namespace impm
       Vector velocity = vector(), acceleration = vector();
       balance.end_motion(u, velocity, acceleration);
       advance_points(
-        balance, scene.time.transfer, u, velocity, acceleration, points);
+        balance, scene.time, dt, u, velocity, acceleration, points);
       balance.carry_motion(grid, u, velocity, acceleration);
       points.sort();
       time += dt;

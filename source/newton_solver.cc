@@ -79,23 +79,33 @@ namespace impm
     for (unsigned int i = 0; i < step.locally_owned_size(); ++i)
       if (!balance.constraints.is_constrained[i])
         step.local_element(i) = 0;
-    Vector       lift     = step;
-    const Vector residual = balance.residual();
+    const Vector guess = u, lift = step, residual = balance.residual();
     linear_solver.vmult_lift(right_side, lift);
-    right_side += residual;
-    right_side *= -1.;
+    right_side.sadd(-1., -1., residual);
     test.set_first_residual(right_side.l2_norm() / balance.unit_of_residual());
     take_tangent(u);
-    result.linear_iterations +=
-      linear_solver.solve(step, right_side, spec.linear_tolerance);
-    ++result.iterations;
-    trial = u;
-    u += lift;
-    u += step;
-    balance.constraints.set_prescribed(u);
-    now      = evaluate(u, !uses_bfgs());
+    const auto go = [&]() {
+      result.linear_iterations +=
+        linear_solver.solve(step, right_side, spec.linear_tolerance);
+      ++result.iterations;
+      u = guess;
+      u += lift;
+      u += step;
+      balance.constraints.set_prescribed(u);
+      now = evaluate(u, !uses_bfgs());
+    };
+    go();
+    if (!now.admissible)
+      {
+        // A new grid may be far out of balance however short the step is. What
+        // is prescribed goes alone then; the search mends the balance.
+        evaluate(guess, true);
+        right_side += residual;
+        go();
+      }
     is_fresh = false;
-    trial -= u;
+    trial    = u;
+    trial -= guess;
     test.count(trial.l2_norm(), step * right_side);
   }
 

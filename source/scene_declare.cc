@@ -212,9 +212,10 @@ namespace impm
               chosen("Grid/Method", "MPM") != "Lagrangian")
             prm.declare_entry("Points per cell",
                               "2",
-                              Patterns::Integer(1, 20),
-                              "In each direction of a cell; Gauss points if "
-                              "the grid is Lagrangian.");
+                              Patterns::List(Patterns::Integer(1, 20), 1, 3),
+                              "In each direction of a cell, one number for "
+                              "all or one for each; Gauss points if the grid "
+                              "is Lagrangian.");
         }
       else
         prm.declare_entry("File",

@@ -124,6 +124,20 @@ namespace impm
       return spec;
     }
 
+    /** One number for all directions, or one for each. */
+    template <int dim>
+    std::array<unsigned int, dim>
+    read_points_per_cell(const ParameterHandler &prm)
+    {
+      const std::string entry   = "Points per cell";
+      const bool        one     = split_names(prm.get(entry)).size() == 1;
+      const auto        numbers = get_numbers(prm, entry, one ? 1 : dim);
+      std::array<unsigned int, dim> result;
+      for (unsigned int d = 0; d < dim; ++d)
+        result[d] = static_cast<unsigned int>(numbers[one ? 0 : d]);
+      return result;
+    }
+
     template <int dim>
     BodySpec<dim>
     read_body(const ParameterHandler                                 &prm,
@@ -167,7 +181,7 @@ namespace impm
                                    "are boxes");
             }
           else
-            body.points_per_cell = prm.get_integer("Points per cell");
+            body.points_per_cell = read_points_per_cell<dim>(prm);
         }
       else
         body.point_file = prm.get("File");

@@ -31,9 +31,8 @@ namespace impm
                const BackgroundGrid<dim> &grid,
                std::vector<Seed<dim>>    &seeds)
     {
-      const unsigned int n       = body.points_per_cell;
-      unsigned int       pattern = 1;
-      for (unsigned int d = 0; d < dim; ++d)
+      unsigned int pattern = 1;
+      for (const unsigned int n : body.points_per_cell)
         pattern *= n;
       for (const auto &cell : grid.triangulation.active_cell_iterators())
         if (cell->is_locally_owned())
@@ -44,9 +43,10 @@ namespace impm
               unsigned int index  = k;
               for (unsigned int d = 0; d < dim; ++d)
                 {
-                  const double extent   = cell_extent(cell, d);
-                  seed.domain[d]        = extent / n;
-                  seed.unit_position[d] = (index % n + 0.5) / n;
+                  const unsigned int n      = body.points_per_cell[d];
+                  const double       extent = cell_extent(cell, d);
+                  seed.domain[d]            = extent / n;
+                  seed.unit_position[d]     = (index % n + 0.5) / n;
                   seed.position[d] =
                     cell->vertex(0)[d] + seed.unit_position[d] * extent;
                   volume *= seed.domain[d];
@@ -61,6 +61,17 @@ namespace impm
             }
     }
 
+    template <int dim>
+    Quadrature<dim>
+    gauss_points(const std::array<unsigned int, dim> &numbers)
+    {
+      const QGauss<1> x(numbers[0]), y(numbers[1]);
+      if constexpr (dim == 2)
+        return QAnisotropic<2>(x, y);
+      else
+        return QAnisotropic<3>(x, y, QGauss<1>(numbers[2]));
+    }
+
     /** Gauss points, in cells that lie in the body as a whole. */
     template <int dim>
     void
@@ -69,12 +80,12 @@ namespace impm
                       const BackgroundGrid<dim> &grid,
                       std::vector<Seed<dim>>    &seeds)
     {
-      const QGauss<dim> quadrature(body.points_per_cell);
-      FEValues<dim>     values(*grid.mapping,
+      const auto    quadrature = gauss_points<dim>(body.points_per_cell);
+      FEValues<dim> values(*grid.mapping,
                            grid.fe,
                            quadrature,
                            update_quadrature_points | update_JxW_values);
-      std::string       cut;
+      std::string   cut;
       for (const auto &cell : grid.triangulation.active_cell_iterators())
         if (cell->is_locally_owned())
           {
@@ -99,7 +110,8 @@ namespace impm
                 seed.volume =
                   values.JxW(q) * circumference(scene.geometry, seed.position);
                 for (unsigned int d = 0; d < dim; ++d)
-                  seed.domain[d] = cell_extent(cell, d) / body.points_per_cell;
+                  seed.domain[d] =
+                    cell_extent(cell, d) / body.points_per_cell[d];
                 seeds.push_back(seed);
               }
           }

@@ -61,7 +61,7 @@ namespace impm
     /** Points come from a shape, or from a file. */
     std::shared_ptr<const Shape<dim>> shape;
     std::string                       point_file;
-    unsigned int                      points_per_cell = 2; ///< per direction
+    std::array<unsigned int, dim>     points_per_cell; ///< by direction
 
     std::shared_ptr<Material>                    material; ///< if deformable
     std::shared_ptr<dealii::FunctionParser<dim>> velocity; ///< at the start

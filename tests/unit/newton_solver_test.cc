@@ -64,6 +64,7 @@ TEST(NewtonSolverMpi, ConvergesQuadratically)
   check_order<2>("plane strain",
                  platen + with_inertia +
                    Overrides{"Geometry/box/Upper corner=0.7, 1"});
+  check_order<2>("plane strain", platen + Overrides{"Grid/Method=Lagrangian"});
   check_order<3>("3D",
                  {"Boundary conditions/top/Type=displacement",
                   "Boundary conditions/top/Value=0; -0.05*t; 0",
@@ -181,4 +182,34 @@ TEST(NewtonSolverMpi, ConvergenceOfIncrementAndEnergy)
   EXPECT_EQ(iterations[0], 2u);
   EXPECT_GT(iterations[1], 2u);
   EXPECT_GT(iterations[2], 2u);
+}
+
+
+// An iterative solver that does not get there leaves the system to the direct
+// one, which is counted.
+TEST(NewtonSolverMpi, DirectSolverTakesOver)
+{
+  const Overrides press = {"Boundary conditions/bottom/Type=fixed",
+                           "Boundary conditions/top/Type=displacement",
+                           "Boundary conditions/top/Value=0; -0.05*t"};
+  Model<2>        direct(block_scene("plane strain"), plastic + press);
+  auto            reference = direct.vector();
+  ASSERT_TRUE(direct.solve(reference).converged);
+  for (const std::string solver : {"CG", "GMRES"})
+    for (const std::string how : {"matrix", "matrix-free"})
+      {
+        Model<2>   model(block_scene("plane strain"),
+                       plastic + press +
+                         Overrides{"Solver/Linear solver=" + solver,
+                                   "Solver/Preconditioner=none",
+                                   "Solver/Operator=" + how,
+                                   "Solver/Linear iterations=3"});
+        auto       u      = model.vector();
+        const auto result = model.solve(u);
+        ASSERT_TRUE(result.converged);
+        EXPECT_EQ(model.step_solver.linear_solver.n_fallbacks,
+                  result.iterations);
+        u -= reference;
+        EXPECT_LT(u.linfty_norm(), 1e-11);
+      }
 }

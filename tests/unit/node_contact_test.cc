@@ -90,6 +90,7 @@ check_folding(const std::string &kind,
   Model<dim>   model(block_scene(kind),
                    plate + overrides +
                      Overrides{"Time/Time step=0.1",
+                               "Materials/rubber/Poisson's ratio=0.45",
                                "Materials/rubber/Law=decoupled neo-Hookean"});
   const double tolerance = 1e-4 * model.grid.smallest_cell_extent();
   unsigned int landed    = 0;
@@ -121,21 +122,30 @@ check_folding(const std::string &kind,
     }
   EXPECT_GT(landed, 0u);
   // More than the upper side is held now.
-  unsigned int held = 0;
+  unsigned int held = 0, held_at_start = dim == 2 ? 9 : 18;
   for (unsigned int i = 0; i < u.locally_owned_size(); i += dim)
     held += model.rigid.holders_of_nodes()[i / dim] > 0;
   held = dealii::Utilities::MPI::sum(held, MPI_COMM_WORLD);
-  EXPECT_GT(held, dim == 2 ? 5u : 25u);
+  EXPECT_GT(held, held_at_start);
 }
 
 TEST(NodeContactMpi, NodesFoldOntoAPlate)
 {
-  check_folding<2>("plane strain", plate("-1, 1", "9, 2", "0; -0.55*t"));
-  check_folding<2>("axisymmetric", plate("-1, 1", "9, 2", "0; -0.55*t"));
+  const Overrides cells = {"Grid/Cells=8, 8"};
+  check_folding<2>("plane strain", plate("-1, 1", "9, 2", "0; -0.5*t"), cells);
+  // Thin rings and slices fold as easily; massive bodies would take more.
+  check_folding<2>("axisymmetric",
+                   plate("9, 1", "20, 2", "0; -0.5*t"),
+                   cells + Overrides{"Grid/Lower corner=10, 0",
+                                     "Grid/Upper corner=11, 1",
+                                     "Geometry/box/Lower corner=10, 0",
+                                     "Geometry/box/Upper corner=11, 1"});
   check_folding<3>("3D",
-                   plate("-1, -1, 1", "9, 9, 2", "0; 0; -0.55*t"),
-                   {"Boundary conditions/left/Type=slip",
-                    "Boundary conditions/bottom/Type=free",
+                   plate("-1, -1, 1", "9, 9, 2", "0; 0; -0.5*t"),
+                   {"Grid/Cells=8, 1, 8",
+                    "Boundary conditions/left/Type=slip",
+                    "Boundary conditions/bottom/Type=slip",
+                    "Boundary conditions/top/Type=slip",
                     "Boundary conditions/back/Type=slip"});
 }
 

@@ -1,0 +1,103 @@
+#include <impm/study.h>
+
+#include <gtest/gtest.h>
+
+#include "run_scene.h"
+
+using namespace impm;
+
+// The billets of Guilkey & Weiss (2003), section 5.1, on coarse grids.
+namespace
+{
+  using Overrides = std::vector<std::string>;
+
+  Columns
+  press(const std::string &name, const Overrides &overrides)
+  {
+    Overrides all = overrides;
+    all.push_back("Output/Pictures=false");
+    const std::string path = std::string(IMPM_SCENES) + "/" + name + ".prm";
+    ParameterFile     file(path, all, declare_file);
+    const int         id =
+      dealii::Utilities::MPI::broadcast(MPI_COMM_WORLD,
+                                        static_cast<int>(getpid()));
+    return run(read_scene<2>(file.handler(), path),
+               MPI_COMM_WORLD,
+               testing::TempDir() + "impm_billet_" + std::to_string(id));
+  }
+
+  const Overrides coarse          = {"Grid/Cells=20, 11", "Time/Time step=0.1"};
+  const Overrides finite_elements = {"Grid/Method=Lagrangian",
+                                     "Bodies/billet/Points per cell=2"};
+
+  Overrides
+  operator+(Overrides first, const Overrides &second)
+  {
+    first.insert(first.end(), second.begin(), second.end());
+    return first;
+  }
+
+  // Of finite elements with cells of 0.25 cm.
+  constexpr double corner = 7.295, load = 3.621e8;
+} // namespace
+
+TEST(BilletMpi, FiniteElementsFoldOntoThePlaten)
+{
+  const auto columns = press("billet_static", coarse + finite_elements);
+  EXPECT_NEAR(columns.at("corner_displacement").back(), corner, 0.01 * corner);
+  EXPECT_NEAR(columns.at("platen_load").back(), load, 0.02 * load);
+  EXPECT_NEAR(columns.at("compression").back(), 0.5, 1e-12);
+}
+
+
+TEST(Billet, PointsAndBoxesAgreeWithFiniteElements)
+{
+  for (const std::string method : {"MPM", "GIMP"})
+    {
+      SCOPED_TRACE(method);
+      const auto columns =
+        press("billet_static",
+              coarse + Overrides{"Grid/Method=" + method,
+                                 "Solver/Nonlinear solver=BFGS"});
+      // The platen of points acts up to a cell of 1 cm ahead of itself.
+      EXPECT_NEAR(columns.at("corner_displacement").back(),
+                  corner,
+                  0.06 * corner);
+      EXPECT_NEAR(columns.at("platen_load").back(), load, 0.15 * load);
+    }
+  const auto columns =
+    press("billet_static_moving_grid",
+          {"Grid/Cells=20, 10", "Time/Time step=0.1", "Grid/Method=GIMP"});
+  EXPECT_NEAR(columns.at("corner_displacement").back(), corner, 0.03 * corner);
+  EXPECT_NEAR(columns.at("platen_load").back(), load, 0.04 * load);
+}
+
+
+// With few points a new grid can be so far out of balance that its first
+// correction turns points inside out, in a step of any length.
+TEST(Billet, FewPointsGoOn)
+{
+  const auto columns =
+    press("billet_static_moving_grid", {"Bodies/billet/Points per cell=2"});
+  EXPECT_NEAR(columns.at("compression").back(), 0.5, 1e-12);
+}
+
+
+TEST(BilletMpi, TimeIntegratorsAgree)
+{
+  const Overrides cells = {"Grid/Cells=20, 11"};
+  const auto      end   = [&](const Overrides &overrides) {
+    return press("billet_dynamic", cells + overrides)
+      .at("corner_displacement")
+      .back();
+  };
+  const double points = end({"Time/Time step=2.5e-3"});
+  const double grid =
+    end({"Time/Time step=2.5e-3", "Time/Acceleration from=grid"});
+  const double forward =
+    end({"Time/Integrator=explicit", "Time/Time step=1.4e-4"});
+  const double elements = end(finite_elements);
+  EXPECT_NEAR(points, elements, 0.05 * elements);
+  EXPECT_NEAR(grid, elements, 0.05 * elements);
+  EXPECT_NEAR(forward, elements, 0.1 * elements);
+}

@@ -5,6 +5,8 @@
 #include <impm/parameter_file.h>
 #include <impm/parameter_messages.h>
 
+#include <boost/algorithm/string/predicate.hpp>
+
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
@@ -114,9 +116,12 @@ namespace impm
                                                     "Time/Integrator",
                                                     "Time/Formulation",
                                                     "Time/CFL number",
+                                                    "Solver/Nonlinear solver",
+                                                    "Solver/Convergence",
                                                     "Solver/Linear solver",
                                                     "Solver/Operator"};
-      return methods.count(path) > 0;
+      return methods.count(path) > 0 ||
+             boost::algorithm::ends_with(path, "/Points from");
     }
 
     std::set<std::vector<std::string>>

@@ -202,7 +202,8 @@ namespace impm
                         "shape",
                         Patterns::Selection("shape|file"),
                         "Where the points come from.");
-      if (chosen(path + "Points from", "shape") == "shape")
+      const auto source = chosen(path + "Points from", "shape");
+      if (may_be(source, "shape"))
         {
           prm.declare_entry("Shape",
                             "",
@@ -217,7 +218,7 @@ namespace impm
                               "all or one for each; Gauss points if the grid "
                               "is Lagrangian.");
         }
-      else
+      if (may_be(source, "file"))
         prm.declare_entry("File",
                           "",
                           Patterns::Anything(),

@@ -191,7 +191,6 @@ TEST(ConservationMpi, WallTakesWhatThePointsLose)
      "Solver/Linear solver=GMRES",
      "Solver/Linear tolerance=1e-10"},
     {"Time/Integrator=Newmark"},
-    {"Time/Integrator=Newmark", "Time/Acceleration from=points"},
     {"Time/Integrator=Newmark", "Grid/Method=GIMP"}};
   for (const auto &integrator : integrators)
     {

@@ -153,17 +153,13 @@ TEST(NewtonSolverMpi, ConvergenceOfIncrementAndEnergy)
   Model<2>        reference(block_scene("plane strain"), press + refined);
   auto            exact = reference.vector();
   ASSERT_TRUE(reference.solve(exact).converged);
-  // The other criterion has no residual to look at.
-  auto       text = block_scene("plane strain");
-  const auto from = text.find("  set Newton tolerance");
-  text.erase(from, text.find('\n', from) + 1 - from);
   std::vector<unsigned int> iterations;
   for (const auto &[displacement, energy] :
        std::vector<std::pair<std::string, std::string>>{{"0.5", "0.5"},
                                                         {"0.5", "1e-12"},
                                                         {"1e-6", "1"}})
     {
-      Model<2>   model(text,
+      Model<2>   model(block_scene("plane strain"),
                      press + refined +
                        Overrides{"Solver/Convergence=increment and energy",
                                  "Solver/Displacement tolerance=" +

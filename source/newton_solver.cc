@@ -129,7 +129,7 @@ namespace impm
           result.linear_iterations +=
             linear_solver.solve(step, right_side, spec.linear_tolerance);
           balance.constraints.set_zero(step);
-          return -(step * right_side);
+          return -balance.work_along(step, right_side);
         };
         ++result.iterations;
         double slope = solve();

@@ -237,7 +237,6 @@ namespace impm
       }
     catch (const dealii::ExceptionBase &)
       {
-        // The momentum formulation has no matrix to solve with.
         if (spec.accept_unfinished)
           throw LinearizationError("the linear solver broke down");
         ++n_fallbacks;

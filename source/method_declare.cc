@@ -201,13 +201,9 @@ namespace impm
                           Patterns::Integer(1),
                           "Largest number in a linear solve.");
         prm.declare_entry("Unfinished solves",
-                          "automatic",
-                          Patterns::Selection(
-                            "automatic|direct solver|next Newton step"),
-                          "Who takes over after the largest number. "
-                          "Automatic: the direct solver in the velocity "
-                          "formulation, Newton's method in the momentum "
-                          "formulation, whose matrix is never built.");
+                          "direct solver",
+                          Patterns::Selection("direct solver|next Newton step"),
+                          "Who takes over after the largest number.");
         prm.declare_entry("Preconditioner",
                           "AMG",
                           Patterns::Selection("AMG|Jacobi|none"),

@@ -85,12 +85,11 @@ namespace impm
     solver.newton_iterations = prm.get_integer("Newton iterations");
     solver.line_search       = prm.get_bool("Line search");
     solver.linear_solver     = prm.get("Linear solver");
-    if (time.momentum_formulation && solver.linear_solver != "GMRES")
+    if (time.momentum_formulation && solver.linear_solver == "CG")
       throw InputError("Linear solver",
-                       "found '" + solver.linear_solver +
-                         "', allowed with the momentum formulation, whose "
-                         "tangent is unsymmetric and never a matrix, is "
-                         "GMRES");
+                       "found 'CG', which needs a symmetric matrix, but the "
+                       "momentum formulation has none: allowed are GMRES, "
+                       "direct");
     if (solver.linear_solver != "direct")
       {
         solver.linear_tolerance  = prm.get_double("Linear tolerance");
@@ -103,14 +102,8 @@ namespace impm
                                                       TangentKind::difference_quotient;
         if (solver.tangent == TangentKind::difference_quotient)
           solver.difference_step = prm.get_double("Difference step");
-        const std::string unfinished = prm.get("Unfinished solves");
-        if (time.momentum_formulation && unfinished == "direct solver")
-          throw InputError("Unfinished solves",
-                           "found 'direct solver', allowed with the momentum "
-                           "formulation, whose tangent is never a matrix, is "
-                           "'next Newton step'");
         solver.accept_unfinished =
-          time.momentum_formulation || unfinished == "next Newton step";
+          prm.get("Unfinished solves") == "next Newton step";
       }
     if (solver.linear_solver == "GMRES")
       solver.gmres_directions = prm.get_integer("GMRES directions");

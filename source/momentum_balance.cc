@@ -42,6 +42,7 @@ namespace impm
                            &start_increment,
                            &work,
                            &smooth,
+                           &smooth_direction,
                            &forces,
                            &free_residual})
       grid.initialize(*vector);
@@ -342,16 +343,36 @@ namespace impm
 
   template <int dim>
   double
+  MomentumBalance<dim>::work_along(const Vector &direction,
+                                   const Vector &force) const
+  {
+    if (!smoothing)
+      return force * direction;
+    smoothing->apply_derivative(direction, smooth_direction);
+    return force * smooth_direction;
+  }
+
+  template <int dim>
+  double
   MomentumBalance<dim>::add_inertia(const Vector &u, double &potential)
   {
-    double squares = 0;
+    // In the momentum formulation, the energy of the points.
+    if (smoothing)
+      {
+        smooth_direction = u;
+        constraints.set_zero(smooth_direction);
+        constraints.interpolate_hanging(smooth_direction);
+        smoothing->apply_derivative(smooth_direction, smooth_direction);
+      }
+    const Vector &direction = smoothing ? smooth_direction : u;
+    double        squares   = 0;
     for (unsigned int i = 0; i < forces.locally_owned_size(); ++i)
       if (mass.local_element(i) > 0)
         {
           const double m = mass.local_element(i), v = u.local_element(i);
           const double a = integrator.mass_factor(dt) * v;
           const double h = known_acceleration.local_element(i);
-          potential += m * (0.5 * a - h) * v;
+          potential += m * (0.5 * a - h) * direction.local_element(i);
           forces.local_element(i) += m * (a - h);
           squares += std::pow(m * a, 2) + std::pow(m * h, 2);
         }
@@ -384,7 +405,7 @@ namespace impm
         forces += load;
         potential += ghost.energy(strain_u);
         for (unsigned int i = 0; i < forces.locally_owned_size(); ++i)
-          potential += load.local_element(i) * u.local_element(i);
+          potential += load.local_element(i) * strain_u.local_element(i);
       }
     const double force_norm = forces.l2_norm();
 
@@ -402,8 +423,8 @@ namespace impm
       integrator.has_inertia() ? add_inertia(u, potential) : 0.;
     if (factor < 1)
       for (unsigned int i = 0; i < forces.locally_owned_size(); ++i)
-        potential +=
-          (1 - factor) * start_forces.local_element(i) * u.local_element(i);
+        potential += (1 - factor) * start_forces.local_element(i) *
+                     strain_u.local_element(i);
 
     free_residual = forces;
     constraints.set_zero(free_residual);

@@ -118,7 +118,7 @@ namespace impm
         linear_solver.solve(dst, src, spec.linear_tolerance);
       balance.constraints.set_zero(dst);
     });
-    return -(step * right_side);
+    return -balance.work_along(step, right_side);
   }
 
   template <int dim>

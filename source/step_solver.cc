@@ -14,8 +14,7 @@ namespace impm
     bool
     has_potential(const Scene<dim> &scene)
     {
-      return !scene.time.momentum_formulation &&
-             scene.solver.tangent != TangentKind::difference_quotient &&
+      return scene.solver.tangent != TangentKind::difference_quotient &&
              std::all_of(scene.bodies.begin(),
                          scene.bodies.end(),
                          [](const auto &body) {

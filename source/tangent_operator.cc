@@ -63,24 +63,7 @@ namespace impm
     const Vector                         &src) const
   {
     ++n_operator_applications;
-    if (!smoothing)
-      {
-        matrix.vmult(dst, src);
-        return;
-      }
-    // The matrix gives inertia to what strains.
-    work = src;
-    constraints.set_zero(work);
-    constraints.interpolate_hanging(work);
-    smoothing->apply_derivative(work, smooth);
-    matrix.vmult(dst, smooth);
-    for (unsigned int i = 0; i < dst.locally_owned_size(); ++i)
-      if (constraints.is_constrained[i])
-        dst.local_element(i) = src.local_element(i);
-      else
-        dst.local_element(i) +=
-          diagonal_stiffness(i) *
-          (src.local_element(i) - smooth.local_element(i));
+    matrix.vmult(dst, src);
   }
 
   template <int dim>
@@ -282,12 +265,15 @@ namespace impm
     for (const auto dof : owned)
       sparsity.add(dof, dof);
     sparsity.compress();
-    matrix.reinit(sparsity);
+    (smoothing ? stiffness : matrix).reinit(sparsity);
+    if (smoothing)
+      smoothing->assemble();
   }
 
   template <int dim>
   void
-  MomentumBalance<dim>::assemble(TrilinosWrappers::SparseMatrix &matrix) const
+  MomentumBalance<dim>::assemble_stiffness(
+    TrilinosWrappers::SparseMatrix &matrix) const
   {
     FullMatrix<double> local;
     matrix         = 0;
@@ -313,20 +299,38 @@ namespace impm
       }
     matrix.compress(VectorOperation::add);
 
-    // Inertia, and rows that nothing has touched.
-    const auto &partitioner = *mass.get_partitioner();
-    double      largest     = 0;
+    // Rows that nothing has touched. A free one, without any stiffness, needs
+    // a place for its inertia: products leave out what is zero.
+    double largest = 0;
     for (const auto dof : grid.dof_handler.locally_owned_dofs())
       largest = std::max(largest, matrix.diag_element(dof));
     largest = Utilities::MPI::max(largest, grid.communicator);
     for (unsigned int i = 0; i < mass.locally_owned_size(); ++i)
       {
-        const auto dof = partitioner.local_to_global(i);
-        if (!constraints.is_constrained[i] && diagonal_stiffness(i) > 0)
-          matrix.add(dof, dof, diagonal_stiffness(i));
-        else if (constraints.is_constrained[i] && matrix.diag_element(dof) == 0)
+        const auto dof = mass.get_partitioner()->local_to_global(i);
+        if (matrix.diag_element(dof) != 0)
+          continue;
+        if (constraints.is_constrained[i])
           matrix.add(dof, dof, largest);
+        else if (smoothing)
+          matrix.add(dof, dof, std::numeric_limits<double>::min());
       }
+    matrix.compress(VectorOperation::add);
+  }
+
+  template <int dim>
+  void
+  MomentumBalance<dim>::assemble(TrilinosWrappers::SparseMatrix &matrix) const
+  {
+    assemble_stiffness(smoothing ? stiffness : matrix);
+    if (smoothing)
+      smoothing->multiply(stiffness, matrix);
+    for (unsigned int i = 0; i < mass.locally_owned_size(); ++i)
+      if (!constraints.is_constrained[i] && diagonal_stiffness(i) > 0)
+        {
+          const auto dof = mass.get_partitioner()->local_to_global(i);
+          matrix.add(dof, dof, diagonal_stiffness(i));
+        }
     matrix.compress(VectorOperation::add);
   }
 

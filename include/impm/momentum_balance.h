@@ -94,12 +94,23 @@ namespace impm
                  const Vector        &end_velocity,
                  const Vector        &end_acceleration);
 
-    /** Gradient of the potential (N); zero where constrained. */
+    /**
+     * The balance of forces (N), zero where constrained. Its work_along() a
+     * direction is the derivative of the potential.
+     */
     const Vector &
     residual() const
     {
       return free_residual;
     }
+
+    /**
+     * What the potential gains of a force (N) along a direction that is zero
+     * where prescribed, hanging nodes included (J). In the momentum formulation
+     * points feel the direction smoothed. Collective.
+     */
+    double
+    work_along(const Vector &direction, const Vector &force) const;
 
     /** Norm of the forces at a strain of one (N), the unit of residuals. */
     double
@@ -126,7 +137,10 @@ namespace impm
     void
     vmult_lift(Vector &dst, const Vector &src) const;
 
-    /** The same as vmult by the matrix that assemble() has filled. */
+    /**
+     * The same as vmult, but for constrained values, by the matrix that
+     * assemble() has filled.
+     */
     void
     vmult_by_matrix(const dealii::TrilinosWrappers::SparseMatrix &matrix,
                     Vector                                       &dst,
@@ -140,11 +154,14 @@ namespace impm
     void
     diagonal(Vector &diagonal) const;
 
-    /** Gives the matrix the sparsity of this step. Collective. */
+    /** Prepares the matrix for assemble() in this step. Collective. */
     void
     initialize_matrix(dealii::TrilinosWrappers::SparseMatrix &matrix) const;
 
-    /** Fills it with the tangent of the velocity formulation. Collective. */
+    /**
+     * Fills it with the tangent, where constrained with something positive on
+     * the diagonal. Collective.
+     */
     void
     assemble(dealii::TrilinosWrappers::SparseMatrix &matrix) const;
 
@@ -249,7 +266,7 @@ namespace impm
                   const Vector &strain_src,
                   const Vector &src) const;
 
-    /** Adds inertia to `forces` and to its potential; returns its norm. */
+    /** Adds inertia to `forces` and to its potential; returns their norm. */
     double
     add_inertia(const Vector &u, double &potential);
 
@@ -263,6 +280,10 @@ namespace impm
     add_points(const Patch                &patch,
                Size                        n_patch_nodes,
                dealii::FullMatrix<double> &matrix) const;
+
+    /** Fills a matrix with what strain costs: inertia is not in it. */
+    void
+    assemble_stiffness(dealii::TrilinosWrappers::SparseMatrix &matrix) const;
 
     void
     add_coupling(const Patch &patch, dealii::FullMatrix<double> &matrix) const;
@@ -293,9 +314,11 @@ namespace impm
 
     mutable std::vector<double> gradient_increments, stress_increments;
     mutable std::vector<double> slopes, shares; ///< of a point on its patch
-    mutable Vector              work, smooth;
+    mutable Vector              work, smooth, smooth_direction;
     const std::unique_ptr<VelocitySmoothing<dim>> smoothing; ///< or null
-    Vector                                        forces, free_residual;
+    /** A factor of the matrix in the momentum formulation. */
+    mutable dealii::TrilinosWrappers::SparseMatrix stiffness;
+    Vector                                         forces, free_residual;
   };
 } // namespace impm
 

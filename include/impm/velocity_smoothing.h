@@ -1,6 +1,8 @@
 #ifndef impm_velocity_smoothing_h
 #define impm_velocity_smoothing_h
 
+#include <deal.II/lac/trilinos_sparse_matrix.h>
+
 #include <impm/footprints.h>
 #include <impm/step_constraints.h>
 
@@ -46,7 +48,30 @@ namespace impm
     void
     apply_derivative(const Vector &u, Vector &result) const;
 
+    /** Prepares multiply() for the points of this step. Collective. */
+    void
+    assemble();
+
+    /**
+     * product = K A, for a K that constraints have been condensed into: rows
+     * and columns of constrained values have their diagonal only, which the
+     * product keeps. It couples nodes that are two cells apart. Collective.
+     */
+    void
+    multiply(const dealii::TrilinosWrappers::SparseMatrix &K,
+             dealii::TrilinosWrappers::SparseMatrix       &product) const;
+
   private:
+    /** A component of the nodes of a patch, by global index. */
+    std::vector<dealii::types::global_dof_index>
+    dofs(const typename Footprints<dim>::Patch &patch,
+         unsigned int                           component) const;
+
+    /** sum_p m_p S_pI S_pJ of the points and nodes of a patch (kg). */
+    void
+    consistent_mass(const typename Footprints<dim>::Patch &patch,
+                    dealii::FullMatrix<double>            &matrix) const;
+
     const MaterialPoints<dim>  &points;
     const Footprints<dim>      &footprints;
     const StepConstraints<dim> &constraints;
@@ -55,6 +80,10 @@ namespace impm
     Vector                                      inverse_mass;
     mutable Vector                              change;
     mutable std::vector<dealii::Tensor<1, dim>> at_points;
+
+    // A is the product of these two.
+    dealii::TrilinosWrappers::MPI::Vector  scaling;
+    dealii::TrilinosWrappers::SparseMatrix spread_mass; ///< S^T m S (kg)
   };
 } // namespace impm
 

@@ -153,6 +153,7 @@ TEST(ConservationMpi, MomentumFormulationKeepsMomentum)
   fly<2>("axisymmetric", momentum + half_refined);
   fly<2>("plane strain", momentum + Overrides{"Grid/Method=GIMP"});
   fly<3>("3D", momentum + space);
+  fly<2>("axisymmetric", Overrides{"Time/Formulation=momentum"} + half_refined);
 }
 
 

@@ -217,6 +217,9 @@ TEST(ParallelMpi, MomentumFormulationAndExplicitSteps)
              platen_is_a_body + momentum +
                Overrides{"Solver/Linear solver=GMRES",
                          "Solver/Linear tolerance=1e-10"});
+  compare<2>(upsetting(), platen_is_a_body + momentum + split);
+  compare<2>(upsetting(),
+             platen_is_a_face + momentum + Overrides{"Grid/Method=GIMP"});
   for (const auto &formulation : {Overrides{}, momentum})
     compare<2>(upsetting(),
                platen_is_a_face + split + formulation +

@@ -9,7 +9,9 @@ disk, 1 microsecond), and prints for each strip its time and, of s1 - s2, the la
 value and the noise: what is left at a point when the mean over its neighbours, up to
 one cell away in x and y, is taken out, as root mean square over points over that of
 s1 - s2 itself. "Inside" counts the points that have all 24 neighbours, where a field
-that is linear leaves nothing, "everywhere" those at edges and contacts, too.
+that is linear leaves nothing, "everywhere" those at edges and contacts, too. The last
+column is the largest difference of s1 - s2 from its mirror image in the axis, over the
+largest value.
 
 Without a FILE.png at the end it only measures. Needs Debian's python3-vtk9 and
 python3-matplotlib.
@@ -71,21 +73,28 @@ class Frame:
 def main(*arguments):
     picture = arguments[-1] if arguments[-1].endswith(".png") else None
     directories = [Path(name) for name in arguments[: len(arguments) - bool(picture)]]
-    strips = [(t, d, Frame(d, t * TRANSIT)) for t in FRAMES for d in directories]
-    print(f"{'run':20} {'time':>6} {'largest (MPa)':>14} {'inside':>8} {'everywhere':>11}")
-    for _, directory, frame in strips:
+    strips = [(d, Frame(d, t * TRANSIT), t) for t in FRAMES for d in directories]
+    # a run that ends early has no picture near the later times
+    strips = [(d, f) for d, f, t in strips if abs(f.time / TRANSIT - t) < 0.1]
+    print(
+        f"{'run':20} {'time':>6} {'largest (MPa)':>14} {'inside':>8} {'everywhere':>11}"
+        f" {'asymmetry':>10}"
+    )
+    for directory, frame in strips:
         inside, everywhere = frame.noise()
-        largest = numpy.nanmax(frame.data["principal_stress_difference"])
+        values = frame.data["principal_stress_difference"]
+        largest = numpy.nanmax(values)
+        asymmetry = numpy.nanmax(abs(values - values[::-1])) / largest
         print(
             f"{directory.name:20} {frame.time / TRANSIT:6.3f} {largest / 1e6:14.1f}"
-            f" {inside:8.4f} {everywhere:11.4f}"
+            f" {inside:8.4f} {everywhere:11.4f} {asymmetry:10.1e}"
         )
     if not picture:
         return
     figure, panels = plt.subplots(
         len(strips), figsize=(9, 2.35 * len(strips)), constrained_layout=True
     )
-    for axes, (_, directory, frame) in zip(numpy.atleast_1d(panels), strips):
+    for axes, (directory, frame) in zip(numpy.atleast_1d(panels), strips):
         axes.imshow(
             frame.data["photoelastic_fringe"],
             cmap="gray",

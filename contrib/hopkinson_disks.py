@@ -9,9 +9,10 @@ disk, 1 microsecond), and prints for each strip its time and, of s1 - s2, the la
 value and the noise: what is left at a point when the mean over its neighbours, up to
 one cell away in x and y, is taken out, as root mean square over points over that of
 s1 - s2 itself. "Inside" counts the points that have all 24 neighbours, where a field
-that is linear leaves nothing, "everywhere" those at edges and contacts, too. The last
-column is the largest difference of s1 - s2 from its mirror image in the axis, over the
-largest value.
+that is linear leaves nothing, "everywhere" those at edges and contacts, too. Then
+comes the largest difference of s1 - s2 from its mirror image in the axis, over the
+largest value, and the root mean square of its difference from that of the first
+directory, over that of s1 - s2.
 
 Without a FILE.png at the end it only measures. Needs Debian's python3-vtk9 and
 python3-matplotlib.
@@ -78,16 +79,19 @@ def main(*arguments):
     strips = [(d, f) for d, f, t in strips if abs(f.time / TRANSIT - t) < 0.1]
     print(
         f"{'run':20} {'time':>6} {'largest (MPa)':>14} {'inside':>8} {'everywhere':>11}"
-        f" {'asymmetry':>10}"
+        f" {'asymmetry':>10} {'from first':>11}"
     )
     for directory, frame in strips:
+        if directory == directories[0]:
+            first = frame.data["principal_stress_difference"]
         inside, everywhere = frame.noise()
         values = frame.data["principal_stress_difference"]
         largest = numpy.nanmax(values)
         asymmetry = numpy.nanmax(abs(values - values[::-1])) / largest
+        difference = numpy.nanmean((values - first) ** 2) / numpy.nanmean(first**2)
         print(
             f"{directory.name:20} {frame.time / TRANSIT:6.3f} {largest / 1e6:14.1f}"
-            f" {inside:8.4f} {everywhere:11.4f} {asymmetry:10.1e}"
+            f" {inside:8.4f} {everywhere:11.4f} {asymmetry:10.1e} {difference**0.5:11.4f}"
         )
     if not picture:
         return

@@ -128,7 +128,8 @@ namespace impm
         if (!probe.field.empty())
           {
             const std::string entry = "Output/" + probe.name + "/Field";
-            follower.field          = make_point_field(probe.field, points);
+            follower.field =
+              make_point_field(probe.field, points, scene.output.fringe_number);
             if (!follower.field)
               throw InputError(entry,
                                "found '" + probe.field +
@@ -231,6 +232,8 @@ namespace impm
             return rigid.displacement(b, 0, time)[component];
       }
 
+    if (follower.field)
+      follower.field->prepare();
     const double limit    = std::numeric_limits<double>::max();
     double       smallest = limit, largest = -limit, sum = 0, weight = 0;
     unsigned int p = 0;

@@ -2,6 +2,9 @@
 
 #include <impm/scene_sections.h>
 
+#include <algorithm>
+#include <limits>
+
 namespace impm
 {
   using dealii::ParameterHandler;
@@ -60,6 +63,19 @@ namespace impm
                         "Multiplies the figure.");
       prm.leave_subsection();
     }
+
+    /** Whether a picture, a probe or a reference has photoelastic fringes. */
+    bool
+    shows_fringes(const ParameterFile::Chosen &chosen)
+    {
+      auto fields = split_names(chosen("Output/Point fields", ""));
+      for (const std::string list : {"Output/Probes", "Reference/Names"})
+        for (const auto &name : split_names(chosen(list, "")))
+          fields.push_back(
+            chosen(list.substr(0, list.find('/') + 1) + name + "/Field", ""));
+      return std::count(fields.begin(), fields.end(), "photoelastic_fringe") >
+             0;
+    }
   } // namespace
 
   void
@@ -101,6 +117,13 @@ namespace impm
                       Patterns::Anything(),
                       "Fields of the points; those that this scene does "
                       "not have are left out.");
+    if (shows_fringes(chosen))
+      prm.declare_entry("Fringe number",
+                        "7",
+                        Patterns::Double(std::numeric_limits<double>::min()),
+                        "Of the field photoelastic_fringe: how many fringes "
+                        "there are from no stress to the largest difference "
+                        "of principal stresses.");
     prm.declare_entry("Probes",
                       "",
                       Patterns::Anything(),

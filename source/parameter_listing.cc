@@ -42,6 +42,7 @@ namespace impm
         {"Time/Integrator", "any"},
         {"Solver/Linear solver", "GMRES"},
         {"Solver/Operator", "any"},
+        {"Output/Point fields", "photoelastic_fringe"},
         {"Output/Probes", "point,largest,extent,motion"},
         {"Output/Reactions", "reaction"},
         {"Reference/Names", "field,probe,curve,finer run"},

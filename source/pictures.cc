@@ -155,7 +155,7 @@ namespace impm
   {
     check_fields(spec);
     for (const auto &name : spec.point_fields)
-      if (auto field = make_point_field(name, points))
+      if (auto field = make_point_field(name, points, spec.fringe_number))
         fields.push_back(std::move(*field));
   }
 
@@ -170,7 +170,10 @@ namespace impm
 
     PointPatches writer;
     for (const auto &field : fields)
-      writer.add_names(field.name, field.n_components);
+      {
+        field.prepare();
+        writer.add_names(field.name, field.n_components);
+      }
     DataOutBase::Patch<0, 3> patch;
     patch.data.reinit(writer.names.size(), 1);
     const auto add = [&](const Point<dim> &position) {

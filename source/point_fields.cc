@@ -1,6 +1,10 @@
+#include <deal.II/base/mpi.h>
+
 #include <impm/point_fields.h>
 
+#include <algorithm>
 #include <cmath>
+#include <memory>
 
 namespace impm
 {
@@ -9,20 +13,30 @@ namespace impm
   const std::vector<std::string> &
   point_field_names()
   {
-    static const std::vector<std::string> names = {"position",
-                                                   "displacement",
-                                                   "velocity",
-                                                   "cauchy_stress",
-                                                   "kirchhoff_stress",
-                                                   "von_mises_stress",
-                                                   "pressure",
-                                                   "equivalent_plastic_strain",
-                                                   "deformation_gradient",
-                                                   "volume",
-                                                   "body",
-                                                   "temperature",
-                                                   "internal_energy"};
+    static const std::vector<std::string> names = {
+      "position",
+      "displacement",
+      "velocity",
+      "cauchy_stress",
+      "kirchhoff_stress",
+      "von_mises_stress",
+      "pressure",
+      "equivalent_plastic_strain",
+      "deformation_gradient",
+      "volume",
+      "body",
+      "temperature",
+      "internal_energy",
+      "principal_stress_difference",
+      "photoelastic_fringe"};
     return names;
+  }
+
+  bool
+  is_plane_field(const std::string &name)
+  {
+    return name == "principal_stress_difference" ||
+           name == "photoelastic_fringe";
   }
 
   template <int dim>
@@ -55,7 +69,9 @@ namespace impm
 
   template <int dim>
   std::optional<PointField<dim>>
-  make_point_field(const std::string &name, const MaterialPoints<dim> &points)
+  make_point_field(const std::string         &name,
+                   const MaterialPoints<dim> &points,
+                   const double               fringe_number)
   {
     const auto &layout = points.layout;
     const auto  cauchy = [&points](const unsigned int p) {
@@ -167,13 +183,47 @@ namespace impm
           values[0] =
             (now.stored + now.dissipated) / points.material(p).density;
         }};
+    if (dim == 3)
+      return std::nullopt;
+    const auto stress_difference = [cauchy](const unsigned int p) {
+      const auto stress = cauchy(p);
+      return std::hypot(stress[0][0] - stress[1][1], 2 * stress[0][1]);
+    };
+    if (name == "principal_stress_difference")
+      return Field{name,
+                   1,
+                   [stress_difference](unsigned int p,
+                                       const Point<dim> &,
+                                       double *values) {
+                     values[0] = stress_difference(p);
+                   }};
+    if (name == "photoelastic_fringe")
+      {
+        const auto largest = std::make_shared<double>(0.);
+        Field      field{name,
+                    1,
+                    [stress_difference, fringe_number, largest](
+                      unsigned int p, const Point<dim> &, double *values) {
+                      values[0] = *largest > 0 ?
+                                         std::cos(2 * numbers::PI * fringe_number *
+                                             stress_difference(p) / *largest) :
+                                         1;
+                    }};
+        field.prepare = [&points, stress_difference, largest]() {
+          *largest = 0;
+          for (unsigned int p = 0; p < points.size(); ++p)
+            *largest = std::max(*largest, stress_difference(p));
+          *largest = Utilities::MPI::max(*largest, points.communicator);
+        };
+        return field;
+      }
     return std::nullopt;
   }
 
   template std::optional<PointField<2>>
-  make_point_field(const std::string &, const MaterialPoints<2> &);
+  make_point_field(const std::string &, const MaterialPoints<2> &, double);
   template std::optional<PointField<3>>
-  make_point_field(const std::string &, const MaterialPoints<3> &);
+  make_point_field(const std::string &, const MaterialPoints<3> &, double);
   template SymmetricTensor<2, 3>
   kirchhoff_stress(const MaterialPoints<2> &, unsigned int);
   template SymmetricTensor<2, 3>

@@ -45,6 +45,7 @@ namespace impm
     WeightedNorm values(spec.norm), references(spec.norm), errors(spec.norm);
     dealii::Vector<double> expected(components.size());
     spec.expressions->set_time(time);
+    follower.field->prepare();
     const unsigned int start = points.layout.offset("initial_position");
     unsigned int       p     = 0;
     for (const auto &particle : points.sorted.particles)

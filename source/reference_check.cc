@@ -76,7 +76,8 @@ namespace impm
   void
   Reference<dim>::prepare_field(const Spec &spec, Follower &follower) const
   {
-    follower.field = make_point_field(spec.field, points);
+    follower.field =
+      make_point_field(spec.field, points, scene.output.fringe_number);
     if (!follower.field)
       {
         std::vector<std::string> allowed;

@@ -1,4 +1,5 @@
 #include <impm/exceptions.h>
+#include <impm/point_fields.h>
 #include <impm/scene_sections.h>
 
 #include <algorithm>
@@ -126,8 +127,20 @@ namespace impm
       require(deformables, traction.body, "Loads/" + traction.name + "/Body");
     for (const auto &reaction : scene.output.reactions)
       require(carriers, reaction.on, "Output/" + reaction.name + "/On");
+    const auto require_plane = [](const std::string &field,
+                                  const std::string &entry) {
+      if (dim == 3 && is_plane_field(field))
+        throw InputError(entry,
+                         "found '" + field +
+                           "', a field of the plane, which 3D does not have");
+    };
+    for (const auto &field : scene.output.point_fields)
+      require_plane(field, "Output/Point fields");
+    for (const auto &reference : scene.references)
+      require_plane(reference.field, "Reference/" + reference.name + "/Field");
     for (const auto &probe : scene.output.probes)
       {
+        require_plane(probe.field, "Output/" + probe.name + "/Field");
         if (probe.kind == ProbeSpec::Kind::motion)
           require(movable, probe.of, "Output/" + probe.name + "/Of");
         for (const auto &body : probe.bodies)

@@ -274,6 +274,25 @@ namespace impm
       return heat;
     }
 
+    /** Whether a picture, a probe or a reference has photoelastic fringes. */
+    template <int dim>
+    bool
+    shows_fringes(const Scene<dim> &scene)
+    {
+      const auto is_fringe = [](const auto &item) {
+        return item.field == "photoelastic_fringe";
+      };
+      const auto &output = scene.output;
+      return std::count(output.point_fields.begin(),
+                        output.point_fields.end(),
+                        "photoelastic_fringe") > 0 ||
+             std::any_of(output.probes.begin(),
+                         output.probes.end(),
+                         is_fringe) ||
+             std::any_of(scene.references.begin(),
+                         scene.references.end(),
+                         is_fringe);
+    }
   } // namespace
 
   int
@@ -373,6 +392,8 @@ namespace impm
       scene.references =
         read_references<dim>(prm, scene.constants, parameter_file);
     });
+    if (shows_fringes(scene))
+      scene.output.fringe_number = prm.get_double({"Output"}, "Fringe number");
     check_scene(scene);
     if (scene.time.integrator == "theta" && scene.time.theta == 0)
       scene.warnings.push_back(

@@ -216,6 +216,7 @@ namespace impm
     unsigned int             picture_steps;
     unsigned int             row_steps; ///< between rows of history
     std::vector<std::string> point_fields;
+    double                   fringe_number = 0; ///< 0: no field has fringes
     std::vector<ProbeSpec>   probes;
     std::vector<ReactionSpec> reactions;
   };

@@ -95,7 +95,7 @@ namespace impm
       now = evaluate(u, !uses_bfgs());
     };
     go();
-    if (!now.admissible)
+    if (!now.admissible && guess.linfty_norm() == 0)
       {
         // A new grid may be far out of balance however short the step is. What
         // is prescribed goes alone then; the search mends the balance.

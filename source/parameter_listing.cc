@@ -40,6 +40,8 @@ namespace impm
         {"Loads/Body force", "any"},
         {"Loads/Tractions", "traction"},
         {"Time/Integrator", "any"},
+        {"Solver/Nonlinear solver", "any"},
+        {"Solver/Convergence", "any"},
         {"Solver/Linear solver", "GMRES"},
         {"Solver/Operator", "any"},
         {"Output/Point fields", "photoelastic_fringe"},

@@ -1,8 +1,6 @@
-#include <impm/study.h>
-
 #include <gtest/gtest.h>
 
-#include "run_scene.h"
+#include "run_file.h"
 
 using namespace impm;
 
@@ -10,21 +8,6 @@ using namespace impm;
 namespace
 {
   using Overrides = std::vector<std::string>;
-
-  Columns
-  press(const std::string &name, const Overrides &overrides)
-  {
-    Overrides all = overrides;
-    all.push_back("Output/Pictures=false");
-    const std::string path = std::string(IMPM_SCENES) + "/" + name + ".prm";
-    ParameterFile     file(path, all, declare_file);
-    const int         id =
-      dealii::Utilities::MPI::broadcast(MPI_COMM_WORLD,
-                                        static_cast<int>(getpid()));
-    return run(read_scene<2>(file.handler(), path),
-               MPI_COMM_WORLD,
-               testing::TempDir() + "impm_billet_" + std::to_string(id));
-  }
 
   const Overrides coarse          = {"Grid/Cells=20, 11", "Time/Time step=0.1"};
   const Overrides finite_elements = {"Grid/Method=Lagrangian",
@@ -43,7 +26,7 @@ namespace
 
 TEST(BilletMpi, FiniteElementsFoldOntoThePlaten)
 {
-  const auto columns = press("billet_static", coarse + finite_elements);
+  const auto columns = run_file("billet_static", coarse + finite_elements);
   EXPECT_NEAR(columns.at("corner_displacement").back(), corner, 0.01 * corner);
   EXPECT_NEAR(columns.at("platen_load").back(), load, 0.02 * load);
   EXPECT_NEAR(columns.at("compression").back(), 0.5, 1e-12);
@@ -56,9 +39,9 @@ TEST(Billet, PointsAndBoxesAgreeWithFiniteElements)
     {
       SCOPED_TRACE(method);
       const auto columns =
-        press("billet_static",
-              coarse + Overrides{"Grid/Method=" + method,
-                                 "Solver/Nonlinear solver=BFGS"});
+        run_file("billet_static",
+                 coarse + Overrides{"Grid/Method=" + method,
+                                    "Solver/Nonlinear solver=BFGS"});
       // The platen of points acts up to a cell of 1 cm ahead of itself.
       EXPECT_NEAR(columns.at("corner_displacement").back(),
                   corner,
@@ -66,8 +49,8 @@ TEST(Billet, PointsAndBoxesAgreeWithFiniteElements)
       EXPECT_NEAR(columns.at("platen_load").back(), load, 0.15 * load);
     }
   const auto columns =
-    press("billet_static_moving_grid",
-          {"Grid/Cells=20, 10", "Time/Time step=0.1", "Grid/Method=GIMP"});
+    run_file("billet_static_moving_grid",
+             {"Grid/Cells=20, 10", "Time/Time step=0.1", "Grid/Method=GIMP"});
   EXPECT_NEAR(columns.at("corner_displacement").back(), corner, 0.03 * corner);
   EXPECT_NEAR(columns.at("platen_load").back(), load, 0.04 * load);
 }
@@ -78,7 +61,7 @@ TEST(Billet, PointsAndBoxesAgreeWithFiniteElements)
 TEST(Billet, FewPointsGoOn)
 {
   const auto columns =
-    press("billet_static_moving_grid", {"Bodies/billet/Points per cell=2"});
+    run_file("billet_static_moving_grid", {"Bodies/billet/Points per cell=2"});
   EXPECT_NEAR(columns.at("compression").back(), 0.5, 1e-12);
 }
 
@@ -87,7 +70,7 @@ TEST(BilletMpi, TimeIntegratorsAgree)
 {
   const Overrides cells = {"Grid/Cells=20, 11"};
   const auto      end   = [&](const Overrides &overrides) {
-    return press("billet_dynamic", cells + overrides)
+    return run_file("billet_dynamic", cells + overrides)
       .at("corner_displacement")
       .back();
   };

@@ -1,8 +1,6 @@
-#include <impm/study.h>
-
 #include <gtest/gtest.h>
 
-#include "run_scene.h"
+#include "run_file.h"
 
 using namespace impm;
 
@@ -12,16 +10,7 @@ namespace
   Columns
   fly(const std::vector<std::string> &overrides)
   {
-    std::vector<std::string> all = overrides;
-    all.push_back("Output/Pictures=false");
-    const std::string path = std::string(IMPM_SCENES) + "/disks.prm";
-    ParameterFile     file(path, all, declare_file);
-    const int         id =
-      dealii::Utilities::MPI::broadcast(MPI_COMM_WORLD,
-                                        static_cast<int>(getpid()));
-    return run(read_scene<2>(file.handler(), path),
-               MPI_COMM_WORLD,
-               testing::TempDir() + "impm_disks_" + std::to_string(id));
+    return run_file("disks", overrides);
   }
 
   constexpr double speed = 1e-3, energy = 260 * speed * speed;

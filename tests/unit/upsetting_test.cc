@@ -2,28 +2,13 @@
 
 #include <numeric>
 
-#include "run_scene.h"
+#include "run_file.h"
 
 using namespace impm;
 
 // The scenes of prm/ against their references.
 namespace
 {
-  template <int dim = 2>
-  Columns
-  run_file(const std::string              &name,
-           const std::vector<std::string> &overrides = {})
-  {
-    auto all = overrides;
-    all.push_back("Output/Pictures=false");
-    ParameterFile file(std::string(IMPM_SCENES) + "/" + name + ".prm",
-                       all,
-                       declare_scene);
-    return run(read_scene<dim>(file.handler()),
-               MPI_COMM_SELF,
-               testing::TempDir() + "impm_run_" + std::to_string(getpid()));
-  }
-
   double
   sum(const std::vector<double> &values)
   {

@@ -343,6 +343,36 @@ TEST(PatchMpi, UniformStrainOnScatteredPoints)
 }
 
 
+// Finite elements: cells of any shape.
+TEST(PatchMpi, UniformStrainOfFiniteElements)
+{
+  const Overrides skew = {
+    "Grid/Method=Lagrangian",
+    "Geometry/box/Lower corner=-9, -9",
+    "Geometry/box/Upper corner=9, 9",
+    "Grid/Map=x + 0.2*y + 0.1*sin(7*x*y); y*(1 - 0.2*x) + 0.1*sin(5*x)"};
+  const auto gradient = some_gradient<2>();
+  patch_test("plane strain", skew, gradient, false);
+  patch_test("plane strain", skew + plastic, gradient, false);
+  patch_test("plane strain",
+             skew + decoupled + Overrides{"Materials/rubber/F-bar=true"},
+             gradient,
+             false);
+  patch_test("plane strain",
+             Overrides{"Grid/Method=Lagrangian"} + refined,
+             gradient,
+             false);
+  patch_test("3D",
+             Overrides{"Grid/Method=Lagrangian",
+                       "Grid/Cells=2, 2, 2",
+                       "Geometry/box/Lower corner=-9, -9, -9",
+                       "Geometry/box/Upper corner=9, 9, 9",
+                       "Grid/Map=x + 0.1*sin(3*y*z); y + 0.2*x*z; z - 0.1*x*y"},
+             some_gradient<3>(),
+             false);
+}
+
+
 // Points anywhere: a linear field has its gradient at all of them, on hanging
 // nodes too, and the ghost penalty does not see it.
 TEST(PatchMpi, LinearFieldsHaveTheirGradient)

@@ -55,6 +55,7 @@ namespace impm
   void
   LinearSolver<dim>::begin_step()
   {
+    factors.reset();
     matrix_is_current = false;
     if (needs_matrix())
       {
@@ -181,11 +182,14 @@ namespace impm
   LinearSolver<dim>::solve_directly(Vector &x, const Vector &b)
   {
     TimerOutput::Scope scope(timer, "direct solver");
-    if (!needs_matrix())
-      balance.initialize_matrix(matrix);
+    // What has been factorized must stay: a tangent may be solved with again.
     if (!matrix_is_current)
-      balance.assemble(matrix);
-    matrix_is_current = true;
+      {
+        if (!needs_matrix())
+          balance.initialize_matrix(matrix);
+        balance.assemble(matrix);
+        matrix_is_current = true;
+      }
     try
       {
         if (!factors)

@@ -106,7 +106,7 @@ namespace impm
     is_fresh = false;
     trial    = u;
     trial -= guess;
-    test.count(trial.l2_norm(), step * right_side);
+    test.count(trial.l2_norm(), balance.work_along(step, right_side));
   }
 
   template <int dim>

@@ -1,5 +1,8 @@
 #include <impm/node_contact.h>
 
+#include <algorithm>
+#include <limits>
+
 namespace impm
 {
   using namespace dealii;

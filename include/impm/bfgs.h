@@ -35,12 +35,6 @@ namespace impm
       return pairs.size() >= largest_number;
     }
 
-    unsigned int
-    n_pairs() const
-    {
-      return pairs.size();
-    }
-
     /**
      * Takes a change of the increment (m) and of the residual (N), unless
      * their product is not clearly positive: the inverse must stay so.

@@ -1,7 +1,7 @@
 #include <deal.II/base/parameter_handler.h>
 #include <deal.II/base/patterns.h>
 
-#include <impm/exceptions.h>
+#include <impm/base/exceptions.h>
 #include <impm/materials/midpoint_rate.h>
 #include <impm/materials/newtonian_fluid.h>
 

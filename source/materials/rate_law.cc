@@ -1,4 +1,4 @@
-#include <impm/exceptions.h>
+#include <impm/base/exceptions.h>
 #include <impm/materials/rate_law.h>
 
 #include <cmath>

@@ -3,7 +3,7 @@
 
 #include <deal.II/base/parameter_handler.h>
 
-#include <impm/parameter_file.h>
+#include <impm/input/parameter_file.h>
 
 #include <array>
 

@@ -3,8 +3,8 @@
 
 #include <deal.II/base/parameter_handler.h>
 
+#include <impm/input/parameter_file.h>
 #include <impm/materials/material.h>
-#include <impm/parameter_file.h>
 
 #include <functional>
 #include <memory>

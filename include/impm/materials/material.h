@@ -4,7 +4,7 @@
 #include <deal.II/base/symmetric_tensor.h>
 #include <deal.II/base/tensor.h>
 
-#include <impm/point_layout.h>
+#include <impm/points/point_layout.h>
 
 namespace dealii
 {

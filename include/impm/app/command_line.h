@@ -1,0 +1,43 @@
+#ifndef impm_app_command_line_h
+#define impm_app_command_line_h
+
+#include <string>
+#include <vector>
+
+namespace impm
+{
+  /** What the user asked for on the command line. */
+  struct CommandLine
+  {
+    enum class Action
+    {
+      run,
+      check,
+      print_parameters,
+      print_version,
+      print_help
+    };
+    enum class Verbosity
+    {
+      quiet,
+      normal,
+      verbose
+    };
+
+    Action                   action    = Action::run;
+    bool                     study     = false; ///< of the Study section
+    Verbosity                verbosity = Verbosity::normal;
+    std::string              parameter_file;
+    std::string              output_directory; ///< empty: the file's own
+    std::vector<std::string> overrides;
+  };
+
+  /** Throws InputError when the words are not of the form that --help shows. */
+  CommandLine
+  parse_command_line(int argc, const char *const *argv);
+
+  const char *
+  command_line_help();
+} // namespace impm
+
+#endif

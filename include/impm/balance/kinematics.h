@@ -1,0 +1,198 @@
+#ifndef impm_balance_kinematics_h
+#define impm_balance_kinematics_h
+
+#include <deal.II/base/symmetric_tensor.h>
+#include <deal.II/base/tensor.h>
+
+#include <impm/materials/material.h>
+
+#include <array>
+
+namespace impm
+{
+  /**
+   * The gradient of an increment u at a point as a list of numbers, and what
+   * is dual to it: d u_i / d x_j at [i dim + j] and, when axisymmetric,
+   * u_r / r behind.
+   */
+  template <int dim>
+  struct Kinematics
+  {
+    static constexpr unsigned int max_size = dim * dim + 1;
+
+    using List   = std::array<double, max_size>;
+    using Matrix = std::array<double, max_size * max_size>; ///< by rows
+
+    explicit Kinematics(const bool axisymmetric)
+      : axisymmetric(axisymmetric)
+      , size(dim * dim + (axisymmetric ? 1 : 0))
+      , n_dilating(axisymmetric ? 3 : dim)
+    {}
+
+    const bool         axisymmetric;
+    const unsigned int size;
+    /** Directions that a change of volume spreads over. */
+    const unsigned int n_dilating;
+
+    /** dF = 1 + gradient. */
+    dealii::Tensor<2, 3>
+    deformation(const double *gradient) const
+    {
+      dealii::Tensor<2, 3> dF;
+      for (unsigned int i = 0; i < dim; ++i)
+        for (unsigned int j = 0; j < dim; ++j)
+          dF[i][j] = gradient[dim * i + j] + (i == j ? 1 : 0);
+      for (unsigned int i = dim; i < 3; ++i)
+        dF[i][i] = 1;
+      if (axisymmetric)
+        dF[2][2] += gradient[dim * dim];
+      return dF;
+    }
+
+    /** factor * stress * inverse^T. */
+    void
+    carry_back_stress(const dealii::SymmetricTensor<2, 3> &stress,
+                      const dealii::Tensor<2, 3>          &inverse,
+                      const double                         factor,
+                      double                              *result) const
+    {
+      for (unsigned int i = 0; i < dim; ++i)
+        for (unsigned int j = 0; j < dim; ++j)
+          {
+            double sum = 0;
+            for (unsigned int k = 0; k < dim; ++k)
+              sum += stress[i][k] * inverse[j][k];
+            result[dim * i + j] = factor * sum;
+          }
+      if (axisymmetric)
+        result[dim * dim] = factor * stress[2][2] * inverse[2][2];
+    }
+
+    /**
+     * How tau L^-T, L = 1 + g, changes with g: c_ijkl + delta_ik tau_jl, the
+     * material's stiffness, whose sum over the points is K_mat, and that of
+     * stress that turns, K_geo (Guilkey & Weiss 2003, section 3.3). The same
+     * from the full tangent is a_ijkl - tau_il delta_jk (Newmark note);
+     * linearized there is no K_geo.
+     */
+    void
+    spatial_tangent(const Material::Response &response,
+                    const Material::Form      form,
+                    double                   *matrix) const
+    {
+      const auto &c   = response.tangent;
+      const auto &a   = response.full_tangent;
+      const auto &tau = response.kirchhoff_stress;
+      switch (form)
+        {
+          case Material::Form::spatial:
+            fill(matrix, [&](auto i, auto j, auto k, auto l) {
+              const double material  = c[i][j][k][l];
+              const double geometric = i == k ? tau[j][l] : 0.;
+              return material + geometric;
+            });
+            break;
+          case Material::Form::full:
+            fill(matrix, [&](auto i, auto j, auto k, auto l) {
+              return a[i][j][k][l] - (j == k ? tau[i][l] : 0.);
+            });
+            break;
+          case Material::Form::linearized:
+            fill(matrix,
+                 [&](auto i, auto j, auto k, auto l) { return c[i][j][k][l]; });
+        }
+    }
+
+    /** factor * L^T matrix L, where L carries a gradient on: g inverse. */
+    void
+    carry_back_tangent(const double               *matrix,
+                       const dealii::Tensor<2, 3> &inverse,
+                       const double                factor,
+                       double                     *result) const
+    {
+      for (unsigned int i = 0; i < dim; ++i)
+        for (unsigned int k = 0; k < dim; ++k)
+          {
+            double half[dim][dim];
+            for (unsigned int j = 0; j < dim; ++j)
+              for (unsigned int m = 0; m < dim; ++m)
+                {
+                  double sum = 0;
+                  for (unsigned int l = 0; l < dim; ++l)
+                    sum += matrix[(dim * i + j) * size + dim * k + l] *
+                           inverse[m][l];
+                  half[j][m] = factor * sum;
+                }
+            for (unsigned int j = 0; j < dim; ++j)
+              for (unsigned int m = 0; m < dim; ++m)
+                {
+                  double sum = 0;
+                  for (unsigned int l = 0; l < dim; ++l)
+                    sum += inverse[j][l] * half[l][m];
+                  result[(dim * i + j) * size + dim * k + m] = sum;
+                }
+          }
+      if (!axisymmetric)
+        return;
+      const unsigned int h    = dim * dim;
+      const double       hoop = factor * inverse[2][2];
+      result[h * size + h]    = hoop * matrix[h * size + h] * inverse[2][2];
+      for (unsigned int i = 0; i < dim; ++i)
+        for (unsigned int j = 0; j < dim; ++j)
+          {
+            double row = 0, column = 0;
+            for (unsigned int l = 0; l < dim; ++l)
+              {
+                row += inverse[j][l] * matrix[(dim * i + l) * size + h];
+                column += inverse[j][l] * matrix[h * size + dim * i + l];
+              }
+            result[(dim * i + j) * size + h] = hoop * row;
+            result[h * size + dim * i + j]   = hoop * column;
+          }
+    }
+
+    /** factor * L^T vector. */
+    void
+    carry_back(const double               *vector,
+               const dealii::Tensor<2, 3> &inverse,
+               const double                factor,
+               double                     *result) const
+    {
+      for (unsigned int i = 0; i < dim; ++i)
+        for (unsigned int j = 0; j < dim; ++j)
+          {
+            double sum = 0;
+            for (unsigned int k = 0; k < dim; ++k)
+              sum += vector[dim * i + k] * inverse[j][k];
+            result[dim * i + j] = factor * sum;
+          }
+      if (axisymmetric)
+        result[dim * dim] = factor * vector[dim * dim] * inverse[2][2];
+    }
+
+  private:
+    /** The matrix with the values of entry(i, j, k, l). */
+    template <typename Entry>
+    void
+    fill(double *matrix, const Entry &entry) const
+    {
+      for (unsigned int i = 0; i < dim; ++i)
+        for (unsigned int j = 0; j < dim; ++j)
+          for (unsigned int k = 0; k < dim; ++k)
+            for (unsigned int l = 0; l < dim; ++l)
+              matrix[(dim * i + j) * size + dim * k + l] = entry(i, j, k, l);
+      if (!axisymmetric)
+        return;
+      const unsigned int h = dim * dim;
+      matrix[h * size + h] = entry(2u, 2u, 2u, 2u);
+      for (unsigned int i = 0; i < dim; ++i)
+        for (unsigned int j = 0; j < dim; ++j)
+          {
+            matrix[(dim * i + j) * size + h] = entry(i, j, 2u, 2u);
+            matrix[h * size + dim * i + j]   = entry(2u, 2u, i, j);
+          }
+    }
+  };
+} // namespace impm
+
+#endif

@@ -1,0 +1,103 @@
+#ifndef impm_balance_point_response_h
+#define impm_balance_point_response_h
+
+#include <impm/balance/kinematics.h>
+#include <impm/balance/plane_stress.h>
+#include <impm/balance/volume_average.h>
+#include <impm/points/material_points.h>
+
+#include <optional>
+#include <vector>
+
+namespace impm
+{
+  /**
+   * What the points answer to the gradients of an increment: P = tau dF^-T
+   * times V0, its tangent A = dP/d(dF), and the trial history. Lists of one
+   * point are those of Kinematics, in units of N m.
+   */
+  template <int dim>
+  class PointResponse
+  {
+  public:
+    PointResponse(const Scene<dim> &scene, const MaterialPoints<dim> &points);
+
+    /** For a step of length dt (s). The gradients become zero. */
+    void
+    begin_step(double dt);
+
+    /**
+     * Evaluates the laws at `gradients`; adds V0 times their potential.
+     * Returns false when a point has no stress.
+     */
+    bool
+    evaluate(bool with_tangent, double &potential);
+
+    /**
+     * Gives `stresses` those of the state at the start, whatever the length
+     * of the step; the gradients are zero. Returns false as evaluate() does.
+     */
+    bool
+    evaluate_start();
+
+    /** stress_changes = tangent times gradient_changes. */
+    void
+    apply_tangent(const std::vector<double> &gradient_changes,
+                  std::vector<double>       &stress_changes) const;
+
+    /**
+     * Replaces the tangent at every point by its positive part. Needs a
+     * symmetric tangent.
+     */
+    void
+    project_tangent();
+
+    const double *
+    tangent(const unsigned int point) const
+    {
+      return &tangents[point * kinematics.size * kinematics.size];
+    }
+
+    /**
+     * The deformation over the step that the law has seen: dF, with the
+     * average change of volume where the law asks for it, and with the
+     * thickness that plane stress takes.
+     */
+    dealii::Tensor<2, 3>
+    increment(unsigned int point) const;
+
+    const double *
+    trial_history(const unsigned int point) const
+    {
+      return &histories[point * points.history_size()];
+    }
+
+    /** tau at the end of the step (Pa), as points that carry stress store it.
+     */
+    const double *
+    end_stress(const unsigned int point) const
+    {
+      return &end_stresses[point * n_stress];
+    }
+
+    /** Sum over the points of the squares of their stresses (N m)^2. */
+    double
+    square_of_stresses() const;
+
+    const Kinematics<dim> kinematics;
+    VolumeAverage<dim>    average;
+
+    std::vector<double> gradients, stresses;
+    unsigned long       n_evaluations = 0; ///< of laws, since the start
+
+  private:
+    const MaterialPoints<dim> &points;
+    std::optional<PlaneStress> plane_stress;
+    double                     dt = 0;
+    std::vector<double>        tangents, histories, end_stresses;
+    const unsigned int         n_stress;   ///< values of a stress, if carried
+    std::vector<double>        thickening; ///< dF_33 in plane stress
+  };
+} // namespace impm
+
+#endif

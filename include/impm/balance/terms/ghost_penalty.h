@@ -1,0 +1,53 @@
+#ifndef impm_balance_terms_ghost_penalty_h
+#define impm_balance_terms_ghost_penalty_h
+
+#include <impm/grid/populated_cells.h>
+
+#include <vector>
+
+namespace impm
+{
+  /**
+   * Keeps nodes that hold only a sliver of material tied to the body:
+   *
+   *   sum over faces F of gamma E_F h_F integral_F [d_n u] . [d_n w]
+   *
+   * on the increment u, over faces between a cell at the edge of the material
+   * (populated, with a neighbour that is not) and a populated cell. E_F is
+   * the smaller stiffness of the two cells, h_F the extent of the finer one
+   * across the face. Zero for every linear field, so a uniform deformation is
+   * untouched; symmetric, and derives from the energy u . G u / 2.
+   */
+  template <int dim>
+  class GhostPenalty
+  {
+  public:
+    static constexpr unsigned int max_nodes = 2 * Footprints<dim>::n_nodes;
+
+    struct Face
+    {
+      unsigned int                        n_nodes = 0;
+      std::array<unsigned int, max_nodes> nodes; ///< of both cells, once each
+      dealii::Tensor<2, static_cast<int>(max_nodes)> matrix; ///< per component
+    };
+
+    /** `gamma` in units of Young's modulus. Collective. */
+    void
+    build(const PopulatedCells<dim> &populated,
+          const BackgroundGrid<dim> &grid,
+          GeometryKind               geometry,
+          double                     gamma);
+
+    /** Adds G u; ghosts of `u` are up to date, those of `force` not summed. */
+    void
+    add_force(const Vector &u, double factor, Vector &force) const;
+
+    /** u . G u / 2 of the faces of this rank. */
+    double
+    energy(const Vector &u) const;
+
+    std::vector<Face> faces; ///< those that this rank works on
+  };
+} // namespace impm
+
+#endif

@@ -1,0 +1,90 @@
+#ifndef impm_balance_velocity_smoothing_h
+#define impm_balance_velocity_smoothing_h
+
+#include <deal.II/lac/trilinos_sparse_matrix.h>
+
+#include <impm/footprints/footprints.h>
+#include <impm/grid/step_constraints.h>
+
+#include <vector>
+
+namespace impm
+{
+  /**
+   * The momentum formulation (Sulsky & Kaul 2004, section 3.2.1). Points move
+   * with the grid's increment u as always, but their strain comes from a
+   * velocity that has been through the points (eq. 3.2.6 and 3.2.7):
+   *
+   *   v_p^L     = v_p + sum_I N_I (u / dt - v)_I,
+   *   m_I v_I^L = sum_p m_p N_I v_p^L,
+   *
+   * so that the strain's increment is s(u) = dt v + A (u - dt v), where
+   * A = M^-1 S^T m S averages over the points around a node. A node with
+   * little mass then has little to say. What a face or a rigid body prescribes
+   * holds for both. s is affine in u; K A is not symmetric, so neither is the
+   * tangent.
+   */
+  template <int dim>
+  class VelocitySmoothing
+  {
+  public:
+    VelocitySmoothing(const MaterialPoints<dim>  &points,
+                      const Footprints<dim>      &footprints,
+                      const StepConstraints<dim> &constraints,
+                      const BackgroundGrid<dim>  &grid);
+
+    /** For the lumped mass (kg) of this step. Collective. */
+    void
+    begin_step(const Vector &mass);
+
+    /**
+     * result = s(u), with `start` = dt v (m). Ghosts and hanging nodes of the
+     * result are up to date. Collective.
+     */
+    void
+    apply(const Vector &u, const Vector &start, Vector &result) const;
+
+    /** The derivative of s: result = A u, u itself where prescribed. */
+    void
+    apply_derivative(const Vector &u, Vector &result) const;
+
+    /** Prepares multiply() for the points of this step. Collective. */
+    void
+    assemble();
+
+    /**
+     * product = K A, for a K that constraints have been condensed into: rows
+     * and columns of constrained values have their diagonal only, which the
+     * product keeps. It couples nodes that are two cells apart. Collective.
+     */
+    void
+    multiply(const dealii::TrilinosWrappers::SparseMatrix &K,
+             dealii::TrilinosWrappers::SparseMatrix       &product) const;
+
+  private:
+    /** A component of the nodes of a patch, by global index. */
+    std::vector<dealii::types::global_dof_index>
+    dofs(const typename Footprints<dim>::Patch &patch,
+         unsigned int                           component) const;
+
+    /** sum_p m_p S_pI S_pJ of the points and nodes of a patch (kg). */
+    void
+    consistent_mass(const typename Footprints<dim>::Patch &patch,
+                    dealii::FullMatrix<double>            &matrix) const;
+
+    const MaterialPoints<dim>  &points;
+    const Footprints<dim>      &footprints;
+    const StepConstraints<dim> &constraints;
+    const BackgroundGrid<dim>  &grid;
+
+    Vector                                      inverse_mass;
+    mutable Vector                              change;
+    mutable std::vector<dealii::Tensor<1, dim>> at_points;
+
+    // A is the product of these two.
+    dealii::TrilinosWrappers::MPI::Vector  scaling;
+    dealii::TrilinosWrappers::SparseMatrix spread_mass; ///< S^T m S (kg)
+  };
+} // namespace impm
+
+#endif

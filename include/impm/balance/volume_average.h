@@ -1,0 +1,102 @@
+#ifndef impm_balance_volume_average_h
+#define impm_balance_volume_average_h
+
+#include <impm/balance/kinematics.h>
+#include <impm/points/material_points.h>
+
+#include <vector>
+
+namespace impm
+{
+  /**
+   * F-bar: the points of a body that lie in one cell share the change of
+   * volume of that cell,
+   *
+   *   dF_bar = (theta / dJ)^(1/n) dF,
+   *   theta  = sum_p v_p dJ_p / sum_p v_p,   v_p = V0_p J_p at t_n,
+   *
+   * so that constant pressure can be had from linear displacements (de Souza
+   * Neto et al. 1996). Stress and tangent derive from the energy of dF_bar:
+   * they are symmetric and couple nothing beyond the cell. n is 2 in plane
+   * strain, else 3; with e the list of the unit tensor (in the n directions)
+   * and m_p = (v_p dJ_p / sum v dJ) dF_p^-T,
+   *
+   *   d ln theta = sum_p m_p . g_p for gradients g of a variation,
+   *   d2 W       = sum_p (A_p g . g + 2 (b_p . g) s + c_p s^2), s = d ln theta.
+   */
+  template <int dim>
+  class VolumeAverage
+  {
+  public:
+    VolumeAverage(const Scene<dim>          &scene,
+                  const MaterialPoints<dim> &points,
+                  const Kinematics<dim>     &kinematics);
+
+    /** Groups the points as they are. */
+    void
+    begin_step();
+
+    /** Whether a point takes part. */
+    bool
+    includes(const unsigned int point) const
+    {
+      return !groups.empty() &&
+             groups[point] != dealii::numbers::invalid_unsigned_int;
+    }
+
+    /**
+     * Takes the gradients at all points. Returns false when some dJ is not
+     * positive.
+     */
+    bool
+    measure(const std::vector<double> &gradients);
+
+    /** dF_bar from dF. */
+    dealii::Tensor<2, 3>
+    average(unsigned int point, dealii::Tensor<2, 3> dF) const;
+
+    /**
+     * Takes the response of the law to dF_bar at a point and takes its mean
+     * pressure out of it. With a tangent, `matrix` comes as its spatial one
+     * and goes as A_p without what depends on the others.
+     */
+    void
+    take_out_pressure(unsigned int                point,
+                      double                      volume,
+                      const dealii::Tensor<2, 3> &inverse,
+                      Material::Response         &response,
+                      double                     *matrix);
+
+    /** Gives all points their share of the mean pressure of their cell. */
+    void
+    share_pressure(const std::vector<double> &gradients,
+                   bool                       with_tangent,
+                   std::vector<double>       &stresses,
+                   std::vector<double>       &tangents);
+
+    /** Adds what couples the points to A g. */
+    void
+    apply_coupling(const std::vector<double> &gradient_changes,
+                   std::vector<double>       &stress_changes) const;
+
+    /** By point: the number of its group, or an invalid one; empty if none. */
+    std::vector<unsigned int> groups;
+
+    /** m_p and b_p, with the size of a gradient for each point. */
+    std::vector<double> mean, coupling;
+    std::vector<double> square;       ///< c_p
+    std::vector<double> group_square; ///< sum of c_p over the group
+
+  private:
+    const MaterialPoints<dim>  &points;
+    const Kinematics<dim>      &kinematics;
+    std::vector<char>           body_takes_part;
+    bool                        used = false;
+    std::vector<double>         start_volume, jacobian;     ///< by point
+    std::vector<double>         group_volume, group_change; ///< sums
+    std::vector<double>         group_pressure;             ///< sum of V0 pi
+    mutable std::vector<double> by_mean, by_coupling; ///< of apply_coupling
+  };
+} // namespace impm
+
+#endif

@@ -1,0 +1,141 @@
+#ifndef impm_footprints_footprints_h
+#define impm_footprints_footprints_h
+
+#include <impm/grid/background_grid.h>
+#include <impm/points/material_points.h>
+
+#include <array>
+#include <functional>
+#include <vector>
+
+namespace impm
+{
+  /**
+   * Where each point touches the grid in this step: entries of (point, values
+   * and gradients of the shape functions of one cell), sorted by cell and
+   * stored as structure-of-arrays. A point of plain MPM has one entry; one
+   * that stands for a box has one for each cell that the box touches, times
+   * the share of the box that lies there. What follows never asks where the
+   * entries come from.
+   */
+  template <int dim>
+  class Footprints
+  {
+  public:
+    static constexpr unsigned int n_nodes = 1u << dim; ///< of a cell
+
+    using CellIterator = typename BackgroundGrid<dim>::CellIterator;
+
+    struct Cell
+    {
+      CellIterator                      cell; ///< owned, or a ghost cell
+      std::array<unsigned int, n_nodes> nodes;
+      unsigned int                      begin, end; ///< its entries
+      double                            extent;     ///< smallest (m)
+    };
+
+    /**
+     * Points that touch the same cells, or that something else couples, and
+     * all the nodes that they touch: a block of the tangent.
+     */
+    struct Patch
+    {
+      unsigned int begin_points, end_points; ///< in patch_points
+      unsigned int begin_nodes, end_nodes;   ///< in patch_nodes
+    };
+
+    /** Part of a point, as a builder finds it. */
+    struct Piece
+    {
+      unsigned int       point;
+      CellIterator       cell;
+      double             weight;   ///< share of the point
+      dealii::Point<dim> centroid; ///< in unit coordinates of the cell
+    };
+
+    /** Writes values and gradients of the shape functions of a piece. */
+    using Shape =
+      std::function<void(const Piece &, double *values, double *gradients)>;
+
+    /**
+     * Makes entries of pieces, which come in any order. `inverse_radius` is
+     * the caller's.
+     */
+    void
+    build(const std::vector<Piece>  &pieces,
+          unsigned int               n_points,
+          const BackgroundGrid<dim> &grid,
+          const Shape               &shape);
+
+    /** The Shape of an axis-aligned cell, times the weight. */
+    static void
+    box_shape(const Piece &piece, double *values, double *gradients);
+
+    /** The Shape of a cell with any corners, by local number of its nodes. */
+    static void
+    mapped_shape(const Piece               &piece,
+                 const BackgroundGrid<dim> &grid,
+                 double                    *values,
+                 double                    *gradients);
+
+    /**
+     * Groups the points for the tangent. `coupled` has, for every point, a
+     * number of those that must share a block whatever cells they touch, or
+     * is empty.
+     */
+    void
+    make_patches(const std::vector<unsigned int> &coupled);
+
+    unsigned int
+    n_entries() const
+    {
+      return point.size();
+    }
+
+    const double *
+    value(const unsigned int entry) const
+    {
+      return &values[entry * n_nodes];
+    }
+
+    /** d N_node / d x_d at [node * dim + d] (1/m). */
+    const double *
+    gradient(const unsigned int entry) const
+    {
+      return &gradients[entry * n_nodes * dim];
+    }
+
+    /** Values of a grid field, whose ghosts are up to date, at all points. */
+    void
+    interpolate(const Vector                        &field,
+                std::vector<dealii::Tensor<1, dim>> &at_points) const;
+
+    /** field += sum_p S_p at_points_p; ghosts of the field are not summed. */
+    void
+    spread(const std::vector<dealii::Tensor<1, dim>> &at_points,
+           Vector                                    &field) const;
+
+    std::vector<Cell>         cells;  ///< those that points touch
+    std::vector<unsigned int> point;  ///< of every entry
+    std::vector<double>       weight; ///< of every entry
+    /** 1/r of every point, if axisymmetric (1/m). */
+    std::vector<double> inverse_radius;
+
+    /** The entries of point p: entries[first[p]] to entries[first[p + 1]]. */
+    std::vector<unsigned int> first, entries;
+
+    std::vector<Patch>        patches;
+    std::vector<unsigned int> patch_points, patch_nodes;
+    /** Where the nodes of an entry stand among those of its patch. */
+    std::vector<unsigned int> place;
+
+  private:
+    unsigned int        n_points = 0;
+    std::vector<double> values, gradients;
+
+    std::vector<unsigned int> cell_of_entry, slot_of_cell, order;
+    bool                      one_entry_each = true;
+  };
+} // namespace impm
+
+#endif

@@ -1,0 +1,37 @@
+#ifndef impm_grid_populated_cells_h
+#define impm_grid_populated_cells_h
+
+#include <impm/footprints/footprints.h>
+
+#include <vector>
+
+namespace impm
+{
+  /** Where the material of a step is, whichever rank has the points. */
+  template <int dim>
+  class PopulatedCells
+  {
+  public:
+    /** Collective. */
+    void
+    build(const Footprints<dim>     &footprints,
+          const MaterialPoints<dim> &points,
+          const BackgroundGrid<dim> &grid);
+
+    struct Cell
+    {
+      typename BackgroundGrid<dim>::CellIterator         cell;
+      std::array<unsigned int, Footprints<dim>::n_nodes> nodes;
+    };
+
+    std::vector<Cell> cells; ///< owned ones that some point touches
+
+    /**
+     * Smallest Young's modulus in a cell, owned or ghost, by active index; 0
+     * where there is no material (Pa).
+     */
+    std::vector<double> stiffness;
+  };
+} // namespace impm
+
+#endif

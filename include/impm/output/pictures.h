@@ -1,0 +1,56 @@
+#ifndef impm_output_pictures_h
+#define impm_output_pictures_h
+
+#include <impm/balance/momentum_balance.h>
+#include <impm/points/point_fields.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace impm
+{
+  /**
+   * particles.pvd and grid.pvd with their VTU files, to be opened in ParaView.
+   * The PVD files are replaced in one move, once all that they name is there.
+   */
+  template <int dim>
+  class Pictures
+  {
+  public:
+    /** Throws InputError when a field has no known name. */
+    Pictures(const OutputSpec           &spec,
+             const MaterialPoints<dim>  &points,
+             const RigidBodies<dim>     &rigid,
+             const MomentumBalance<dim> &balance);
+
+    /**
+     * Adds a picture of the points as they are and of the grid, which shows
+     * `u` (m) when it still is the grid of the step that ended; pass null
+     * otherwise. Collective.
+     */
+    void
+    write(const std::string &directory, double time, const Vector *u);
+
+    static void
+    check_fields(const OutputSpec &spec);
+
+  private:
+    const MaterialPoints<dim>   &points;
+    const RigidBodies<dim>      &rigid;
+    const MomentumBalance<dim>  &balance;
+    std::vector<PointField<dim>> fields;
+    unsigned int                 n_written = 0;
+
+    std::vector<std::pair<double, std::string>> point_files, grid_files;
+  };
+
+  /**
+   * Writes a file under another name and moves it there, so that a crash
+   * leaves the one before. Throws SystemError. Not collective.
+   */
+  void
+  replace_file(const std::string &name, const std::string &content);
+} // namespace impm
+
+#endif

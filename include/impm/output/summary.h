@@ -1,0 +1,53 @@
+#ifndef impm_output_summary_h
+#define impm_output_summary_h
+
+#include <deal.II/base/mpi.h>
+
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace impm
+{
+  /** How wrong a run is by one of its references. */
+  struct ReferenceError
+  {
+    std::string name, kind, norm;
+    /** Norms over the points; of a probe or curve the (last) figures. */
+    double                value, reference;
+    double                error;
+    std::string           flaw; ///< why the error is not a number
+    std::optional<double> reference_wall_seconds; ///< of a finer run
+  };
+
+  /** summary.json: what a run was, what it cost and what it gave. */
+  struct RunSummary
+  {
+    std::string                                        scene, status;
+    int                                                dim;
+    unsigned long                                      points, bytes_per_point;
+    unsigned int                                       steps;
+    double                                             time;
+    std::vector<std::pair<std::string, unsigned long>> counts;
+    std::vector<std::pair<std::string, double>>        figures; ///< last row
+    std::map<std::string, double> phases; ///< wall seconds of rank 0
+    double                        wall_seconds;
+    std::vector<ReferenceError>   errors;
+
+    /** Collective, for the peak of memory over all ranks. */
+    void
+    write(const std::string &directory, MPI_Comm communicator) const;
+
+    /** Wall time by phase, for the terminal. */
+    std::string
+    phase_table() const;
+
+    /** A line for each error, beside the run time. */
+    std::string
+    error_table() const;
+  };
+} // namespace impm
+
+#endif

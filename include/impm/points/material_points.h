@@ -1,0 +1,171 @@
+#ifndef impm_points_material_points_h
+#define impm_points_material_points_h
+
+#include <deal.II/particles/particle_handler.h>
+
+#include <impm/grid/background_grid.h>
+#include <impm/points/point_layout.h>
+#include <impm/scene/scene.h>
+#include <impm/scene/seeding.h>
+
+#include <functional>
+#include <vector>
+
+namespace impm
+{
+  /**
+   * Particles in a grid, none of which may ever be lost.
+   */
+  template <int dim>
+  class SortedParticles
+  {
+  public:
+    SortedParticles(const BackgroundGrid<dim> &grid,
+                    unsigned int               n_doubles_per_point);
+
+    /**
+     * Adds particles with consecutive numbers; `fill` writes the fields of
+     * one. Collective.
+     */
+    void
+    insert(const std::vector<Seed<dim>>                           &seeds,
+           const std::function<void(const Seed<dim> &, double *)> &fill = {});
+
+    /**
+     * Finds the cell of every particle after points or grid have moved.
+     * Throws ComputationError that names a particle that has left the domain
+     * or could not be found. Collective.
+     */
+    void
+    sort();
+
+    dealii::types::particle_index
+    n_global() const
+    {
+      return particles.n_global_particles();
+    }
+
+    dealii::Particles::ParticleHandler<dim> particles;
+
+  private:
+    const BackgroundGrid<dim> &grid;
+    std::string                lost;
+  };
+
+  /**
+   * The deformable bodies: points that carry mass, motion, deformation and
+   * history, in the order of the cells that they lie in.
+   */
+  template <int dim>
+  class MaterialPoints
+  {
+  public:
+    /** Decides which fields the points of this scene carry. */
+    static PointLayout
+    choose_layout(const Scene<dim> &scene);
+
+    /** Fills the bodies of the scene with points. Collective. */
+    MaterialPoints(const Scene<dim> &scene, const BackgroundGrid<dim> &grid);
+
+    /** Sorts the points into cells and takes their addresses. Collective. */
+    void
+    sort();
+
+    /** Number of points of this rank. */
+    unsigned int
+    size() const
+    {
+      return data.size();
+    }
+
+    /** All the fields of a point; offsets are those of the layout. */
+    double *
+    fields(const unsigned int point)
+    {
+      return data[point];
+    }
+    const double *
+    fields(const unsigned int point) const
+    {
+      return data[point];
+    }
+
+    unsigned int
+    body(const unsigned int point) const
+    {
+      return static_cast<unsigned int>(data[point][0]);
+    }
+
+    const Material &
+    material(const unsigned int point) const
+    {
+      return *materials[body(point)];
+    }
+
+    /** Whether all materials have a specific heat. */
+    bool
+    have_temperature() const;
+
+    double
+    initial_volume(const unsigned int point) const
+    {
+      return data[point][1];
+    }
+
+    double
+    mass(const unsigned int point) const
+    {
+      return initial_volume(point) * material(point).density;
+    }
+
+    /** Where a point was at the start, if the points keep it. */
+    dealii::Point<dim>
+    initial_position(const unsigned int point) const
+    {
+      dealii::Point<dim> place;
+      for (unsigned int d = 0; d < dim; ++d)
+        place[d] = data[point][offset_initial_position + d];
+      return place;
+    }
+
+    /** Fields, place, place in the cell and number of one point. */
+    unsigned long
+    bytes_per_point() const
+    {
+      return (layout.size() + 2 * dim) * sizeof(double) +
+             sizeof(dealii::types::particle_index);
+    }
+
+    /** Largest number of doubles that any law keeps per point. */
+    unsigned int
+    history_size() const
+    {
+      return history_layout.size();
+    }
+
+    const PointLayout    layout;
+    SortedParticles<dim> sorted;
+    const unsigned int   offset_deformation, offset_history;
+    // 0 where the points have none of it. The affine velocity is a matrix by
+    // rows, d v_i / d x_j; the stress is what the force at t_n comes from, tau.
+    const unsigned int offset_velocity, offset_acceleration, offset_affine,
+      offset_stress, offset_initial_position;
+    /** Within the history: offsets count from offset_history. */
+    const PointLayout history_layout;
+    const MPI_Comm    communicator;
+
+  private:
+    std::vector<std::shared_ptr<Material>> materials; ///< by body
+    std::vector<double *>                  data;
+  };
+
+  /**
+   * Largest speed (m/s) at which news travel: of elastic waves at rest, plus
+   * that of the fastest point. Collective.
+   */
+  template <int dim>
+  double
+  largest_speed(const MaterialPoints<dim> &points);
+} // namespace impm
+
+#endif

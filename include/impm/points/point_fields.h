@@ -1,0 +1,83 @@
+#ifndef impm_points_point_fields_h
+#define impm_points_point_fields_h
+
+#include <impm/points/material_points.h>
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace impm
+{
+  /** A field of the points as users see it, in pictures and probes. */
+  template <int dim>
+  struct PointField
+  {
+    std::string  name;
+    unsigned int n_components; ///< 1, 3 (vector) or 9 (tensor, by rows)
+
+    /**
+     * Writes the components at a point that lies at a position, once the field
+     * is prepared. Not collective.
+     */
+    std::function<
+      void(unsigned int point, const dealii::Point<dim> &position, double *)>
+      evaluate;
+
+    /**
+     * Finds what the field needs of all points as they are, if anything:
+     * called before the points are evaluated, anew when they have changed.
+     * Collective.
+     */
+    std::function<void()> prepare = []() {};
+  };
+
+  /**
+   * Names of all the fields that some scene can have. Those that points do
+   * not carry follow from what they do:
+   *
+   *   temperature      T0 + plastic work / (rho0 c): all of it heats, nothing
+   *                    is conducted (Sulsky & Kaul 2004, eq. 2.3.5) (K)
+   *   internal_energy  what is stored plus plastic work (eq. 2.2.16) (J/kg)
+   *   principal_stress_difference
+   *                    s1 - s2 of the Cauchy stress in the plane: x and y, or
+   *                    r and z (Pa)
+   *   photoelastic_fringe
+   *                    cos(2 pi n (s1 - s2) / max(s1 - s2)) with a fringe
+   *                    number n and the largest difference that any point of
+   *                    a deformable body has at this instant; 1 where there
+   *                    is no stress (Guilkey & Weiss 2003, eq. 22)
+   *
+   * The last two need a plane: not in 3D.
+   */
+  const std::vector<std::string> &
+  point_field_names();
+
+  /** Whether a field is one of a plane, which 3D does not have. */
+  bool
+  is_plane_field(const std::string &name);
+
+  /**
+   * The field of a name, or nothing when the points of this scene do not have
+   * it. Keeps a reference to the points. The fringe number is that of
+   * `photoelastic_fringe`.
+   */
+  template <int dim>
+  std::optional<PointField<dim>>
+  make_point_field(const std::string         &name,
+                   const MaterialPoints<dim> &points,
+                   double                     fringe_number = 7);
+
+  /** tau at a point as it is (Pa). */
+  template <int dim>
+  dealii::SymmetricTensor<2, 3>
+  kirchhoff_stress(const MaterialPoints<dim> &points, unsigned int point);
+
+  /** F at a point. */
+  template <int dim>
+  dealii::Tensor<2, 3>
+  deformation_gradient(const MaterialPoints<dim> &points, unsigned int point);
+} // namespace impm
+
+#endif

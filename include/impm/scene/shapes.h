@@ -1,0 +1,69 @@
+#ifndef impm_scene_shapes_h
+#define impm_scene_shapes_h
+
+#include <deal.II/base/bounding_box.h>
+#include <deal.II/base/parameter_handler.h>
+#include <deal.II/base/point.h>
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace impm
+{
+  /** A region of space that a body fills at the start. */
+  template <int dim>
+  class Shape
+  {
+  public:
+    virtual ~Shape() = default;
+
+    /** Whether the point lies inside or on the surface. */
+    virtual bool
+    contains(const dealii::Point<dim> &point) const = 0;
+
+    /** A box around the shape, if it knows one (an implicit function does
+     * not). */
+    virtual std::optional<dealii::BoundingBox<dim>>
+    bounding_box() const = 0;
+
+    /** Whether the shape fills that box. */
+    virtual bool
+    is_box() const = 0;
+  };
+
+  template <int dim>
+  using NamedShapes = std::map<std::string, std::shared_ptr<const Shape<dim>>>;
+
+  /** A kind of shape that a scene can name. */
+  template <int dim>
+  struct ShapeEntry
+  {
+    std::string name; ///< as in `set Kind = ...`
+    std::string documentation;
+
+    /** Declares the entries of this kind, and no others. */
+    std::function<void(dealii::ParameterHandler &)> declare;
+
+    /**
+     * Reads them back; `constants` may stand in expressions, `others` are the
+     * shapes named before this one, for unions and differences. Throws
+     * InputError with the entry's bare name.
+     */
+    std::function<std::shared_ptr<const Shape<dim>>(
+      dealii::ParameterHandler            &prm,
+      const std::map<std::string, double> &constants,
+      const NamedShapes<dim>              &others)>
+      create;
+  };
+
+  /** box, ball, cylinder (3D), union, difference, function. */
+  template <int dim>
+  const std::vector<ShapeEntry<dim>> &
+  shape_list();
+} // namespace impm
+
+#endif

@@ -1,0 +1,67 @@
+#ifndef impm_study_reference_spec_h
+#define impm_study_reference_spec_h
+
+#include <deal.II/base/function_parser.h>
+
+#include <impm/input/parameter_file.h>
+#include <impm/study/curve.h>
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace impm
+{
+  /** What a scene should give, and how the difference is measured. */
+  template <int dim>
+  struct ReferenceSpec
+  {
+    enum class Kind
+    {
+      field,    ///< at the points
+      probe,    ///< a figure of the history at one time
+      curve,    ///< a column of the history over another
+      finer_run ///< columns of the history of this scene with other entries
+    };
+    std::string name;
+    Kind        kind;
+    Norm        norm = Norm::max;
+    /** Divides the error; none: the norm of the reference does. */
+    std::optional<double> scale;
+
+    std::string                                  field;
+    std::vector<unsigned int>                    components; ///< empty: all
+    std::vector<std::string>                     bodies;     ///< empty: all
+    std::shared_ptr<dealii::FunctionParser<dim>> expressions;
+    bool largest = false; ///< over the rows, rather than at the end
+
+    /** Columns of the history; one, but for a finer run. */
+    std::vector<std::string>                   columns;
+    std::string                                against;
+    std::optional<double>                      time;  ///< none: the end
+    std::shared_ptr<dealii::FunctionParser<1>> value; ///< of time or abscissa
+    Curve                                      curve; ///< unless `value`
+
+    std::vector<std::string> overrides;
+    std::string              directory; ///< empty: in that of this run
+  };
+
+  /** Declares the section Reference. */
+  void
+  declare_references(dealii::ParameterHandler    &prm,
+                     const ParameterFile::Chosen &chosen);
+
+  /**
+   * Reads it from inside the section. Files are looked for beside the
+   * parameter file, then in the working directory.
+   */
+  template <int dim>
+  std::vector<ReferenceSpec<dim>>
+  read_references(dealii::ParameterHandler            &prm,
+                  const std::map<std::string, double> &constants,
+                  const std::string                   &parameter_file);
+} // namespace impm
+
+#endif

@@ -1,0 +1,147 @@
+#include <deal.II/base/mpi.h>
+
+#include <impm/app/version.h>
+#include <impm/base/exceptions.h>
+#include <impm/input/parameter_listing.h>
+#include <impm/run/simulation.h>
+#include <impm/study/finer_run.h>
+#include <impm/study/study_process.h>
+#include <impm/study/study_runner.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <new>
+#include <optional>
+#include <sstream>
+
+namespace
+{
+  using namespace impm;
+
+  template <int dim>
+  void
+  run(const CommandLine &line, ParameterFile &file)
+  {
+    const Scene<dim> scene =
+      read_scene<dim>(file.handler(), line.parameter_file);
+    if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
+      for (const auto &warnings : {file.warnings, scene.warnings})
+        for (const auto &warning : warnings)
+          std::cerr << "impm_dealii: warning: " << warning << std::endl;
+    const std::string name =
+      std::filesystem::path(line.parameter_file).stem().string();
+    std::string directory = line.output_directory;
+    if (directory.empty())
+      directory = scene.output.directory;
+    if (directory.empty())
+      directory = "output/" + name;
+
+    Simulation<dim>        simulation(scene, line.verbosity, MPI_COMM_WORLD);
+    const FinerRunner<dim> finer(scene, line, directory, MPI_COMM_WORLD);
+    simulation.describe();
+    if (line.action == CommandLine::Action::check)
+      return;
+    const auto finer_runs = finer.run();
+    simulation.run(directory, name, file.resolved({"Study"}), finer_runs);
+  }
+
+  void
+  dispatch(const CommandLine &line, const bool first)
+  {
+    switch (line.action)
+      {
+        case CommandLine::Action::print_help:
+          if (first)
+            std::cout << command_line_help();
+          return;
+        case CommandLine::Action::print_version:
+          if (first)
+            std::cout << "impm_dealii " << version << ' ' << git_revision
+                      << '\n';
+          return;
+        case CommandLine::Action::print_parameters:
+          if (first)
+            print_parameter_listing(std::cout);
+          return;
+        default:
+          break;
+      }
+    if (line.study && is_started_by_mpi())
+      throw InputError("",
+                       "--study under mpirun: it starts its own processes; "
+                       "allowed is an entry 'ranks' in a list of the study");
+    ParameterFile file(line.parameter_file, line.overrides, declare_file);
+    try
+      {
+        if (line.study)
+          run_study(line, file);
+        else if (scene_dimension(file.handler()) == 3)
+          run<3>(line, file);
+        else
+          run<2>(line, file);
+      }
+    catch (const InputError &error)
+      {
+        // Say where the entry stands.
+        if (error.entry.empty())
+          throw;
+        throw InputError("",
+                         file.locate(error.entry) + ": entry '" + error.entry +
+                           "': " + error.what());
+      }
+  }
+} // namespace
+
+int
+main(int argc, char **argv)
+{
+  // What a study starts can start MPI only if the study itself has not.
+  const bool is_study =
+    std::count(argv, argv + argc, std::string("--study")) > 0;
+  std::optional<dealii::Utilities::MPI::MPI_InitFinalize> mpi;
+  if (!is_study || is_started_by_mpi())
+    mpi.emplace(argc, argv, 1);
+  const bool first =
+    !mpi || dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
+  const auto say = [&](const std::string &what, const std::string &why) {
+    if (first)
+      std::cerr << "impm_dealii: " << what << why << std::endl;
+  };
+  // A failure of one rank alone would leave the others waiting.
+  const auto fail_alone = [&](const std::string &why) {
+    std::cerr << "impm_dealii: system failure: " << why << std::endl;
+    if (mpi && dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
+      MPI_Abort(MPI_COMM_WORLD, 3);
+    return 3;
+  };
+  try
+    {
+      dispatch(parse_command_line(argc, argv), first);
+    }
+  catch (const InputError &error)
+    {
+      say("bad input: ", error.what());
+      return 1;
+    }
+  catch (const ComputationError &error)
+    {
+      say("the computation cannot go on: ", error.what());
+      return 2;
+    }
+  catch (const dealii::ExceptionBase &error)
+    {
+      std::ostringstream info;
+      error.print_info(info);
+      return fail_alone(info.str());
+    }
+  catch (const std::bad_alloc &)
+    {
+      return fail_alone("out of memory");
+    }
+  catch (const std::exception &error)
+    {
+      return fail_alone(error.what());
+    }
+  return 0;
+}

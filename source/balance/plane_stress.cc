@@ -1,0 +1,62 @@
+#include <impm/balance/plane_stress.h>
+
+#include <cmath>
+#include <limits>
+
+namespace impm
+{
+  bool
+  PlaneStress::evaluate(const Material             &material,
+                        const dealii::Tensor<2, 3> &start,
+                        const double               *history,
+                        double                     *trial_history,
+                        Material::Deformation      &deformation,
+                        Material::Response         &response,
+                        double                     *matrix)
+  {
+    constexpr unsigned int n = 5, h = n - 1;
+    constexpr double       infinity = std::numeric_limits<double>::infinity();
+    const auto             form     = material.form();
+    Matrix                 space;
+
+    // Newton's method for the strain across: ln dF_33, or the linear one. The
+    // stress that the law knows, tau or (by volume at t_n or as tau / J) sigma,
+    // grows with it, so what has been seen brackets the root, and where a
+    // kink would throw the iteration out, the bracket is halved.
+    double strain = 0, last = infinity, lower = -infinity, upper = infinity;
+    for (unsigned int iteration = 0;; ++iteration)
+      {
+        deformation.increment[2][2] =
+          form == Material::Form::linearized ? 1 + strain : std::exp(strain);
+        deformation.total = deformation.increment * start;
+        ++n_evaluations;
+        if (iteration == 60 ||
+            !material.evaluate(
+              deformation, history, trial_history, true, response))
+          return false;
+        thick.spatial_tangent(response, form, space.data());
+        const double stress = response.kirchhoff_stress[2][2];
+        const double slope =
+          space[h * n + h] + (form == Material::Form::spatial ? stress : 0.);
+        const double step = -stress / slope;
+        if (!(slope > 0) || !std::isfinite(step))
+          return false;
+        const double size = std::abs(step);
+        if (size <= 1e-14 || (size <= 1e-11 && size >= 0.5 * last))
+          break; // done, or at round-off
+        last                       = size;
+        (step > 0 ? lower : upper) = strain;
+        strain += step;
+        if (!(strain > lower && strain < upper))
+          strain = 0.5 * (lower + upper);
+      }
+    if (matrix == nullptr)
+      return true;
+    for (unsigned int a = 0; a < h; ++a)
+      for (unsigned int b = 0; b < h; ++b)
+        matrix[a * h + b] = space[a * n + b] - space[a * n + h] /
+                                                 space[h * n + h] *
+                                                 space[h * n + b];
+    return true;
+  }
+} // namespace impm

@@ -1,0 +1,169 @@
+#include <deal.II/base/quadrature_lib.h>
+
+#include <deal.II/fe/fe_q.h>
+#include <deal.II/fe/fe_values.h>
+
+#include <impm/balance/terms/ghost_penalty.h>
+#include <impm/grid/cell_neighbors.h>
+
+namespace impm
+{
+  using namespace dealii;
+
+  namespace
+  {
+    template <int dim>
+    using CellIterator = typename BackgroundGrid<dim>::CellIterator;
+
+    /** Whether this rank, coming from this cell, works on the face. */
+    template <int dim>
+    bool
+    works_on(const CellIterator<dim> &cell, const unsigned int f)
+    {
+      const auto neighbor = cell->neighbor(f);
+      if (neighbor->has_children())
+        return false;
+      if (cell->neighbor_is_coarser(f))
+        return true;
+      if (neighbor->is_locally_owned())
+        return cell->active_cell_index() < neighbor->active_cell_index();
+      return cell->subdomain_id() < neighbor->subdomain_id();
+    }
+  } // namespace
+
+  template <int dim>
+  void
+  GhostPenalty<dim>::build(const PopulatedCells<dim> &populated_cells,
+                           const BackgroundGrid<dim> &grid,
+                           const GeometryKind         geometry,
+                           const double               gamma)
+  {
+    faces.clear();
+    if (gamma == 0)
+      return;
+
+    const auto         &stiffness = populated_cells.stiffness;
+    std::vector<double> at_edge(stiffness.size());
+    for (const auto &cell : populated_cells.cells)
+      for_each_neighbor<dim>(cell.cell, [&](const auto &neighbor) {
+        if (stiffness[neighbor->active_cell_index()] == 0)
+          at_edge[cell.cell->active_cell_index()] = 1;
+      });
+    exchange_cell_data(grid, at_edge);
+
+    const FE_Q<dim>       fe(1);
+    const QGauss<dim - 1> quadrature(2);
+    const UpdateFlags     flags = update_gradients | update_normal_vectors |
+                              update_quadrature_points | update_JxW_values;
+    FEFaceValues<dim>      here(*grid.mapping, fe, quadrature, flags);
+    FEFaceValues<dim>      there(*grid.mapping, fe, quadrature, flags);
+    FESubfaceValues<dim>   there_coarser(*grid.mapping, fe, quadrature, flags);
+    constexpr unsigned int half = max_nodes / 2;
+    const bool axisymmetric     = geometry == GeometryKind::axisymmetric;
+
+    for (const auto &populated : populated_cells.cells)
+      for (const unsigned int f : populated.cell->face_indices())
+        {
+          const auto &cell = populated.cell;
+          if (cell->at_boundary(f) || !works_on<dim>(cell, f))
+            continue;
+          const CellIterator<dim> neighbor(cell->neighbor(f));
+          const unsigned int      i = cell->active_cell_index(),
+                             j      = neighbor->active_cell_index();
+          if (stiffness[j] == 0 || (at_edge[i] == 0 && at_edge[j] == 0))
+            continue;
+
+          const typename Triangulation<dim>::active_cell_iterator tria_cell(
+            cell),
+            tria_neighbor(neighbor);
+          here.reinit(tria_cell, f);
+          const FEValuesBase<dim> *other = &there;
+          if (cell->neighbor_is_coarser(f))
+            {
+              const auto [face, subface] =
+                cell->neighbor_of_coarser_neighbor(f);
+              there_coarser.reinit(tria_neighbor, face, subface);
+              other = &there_coarser;
+            }
+          else
+            there.reinit(tria_neighbor, cell->neighbor_of_neighbor(f));
+
+          // Where the shape functions of both cells stand among the nodes of
+          // the face, which share some.
+          Face                                face;
+          std::array<unsigned int, max_nodes> place;
+          const auto neighbors = grid.nodes_of(neighbor);
+          for (unsigned int v = 0; v < max_nodes; ++v)
+            {
+              const unsigned int node =
+                v < half ? populated.nodes[v] : neighbors[v - half];
+              const auto end = face.nodes.begin() + face.n_nodes;
+              place[v] =
+                std::find(face.nodes.begin(), end, node) - face.nodes.begin();
+              if (place[v] == face.n_nodes)
+                face.nodes[face.n_nodes++] = node;
+            }
+          const double weight = gamma * std::min(stiffness[i], stiffness[j]) *
+                                cell_extent(cell, f / 2);
+          for (const unsigned int q : here.quadrature_point_indices())
+            {
+              std::array<double, max_nodes> jump{};
+              for (unsigned int v = 0; v < half; ++v)
+                {
+                  jump[place[v]] +=
+                    here.shape_grad(v, q) * here.normal_vector(q);
+                  jump[place[half + v]] -=
+                    (other->shape_grad(v, q) * here.normal_vector(q));
+                }
+              const double around =
+                axisymmetric ? 2 * numbers::PI * here.quadrature_point(q)[0] :
+                               1.;
+              for (unsigned int a = 0; a < face.n_nodes; ++a)
+                for (unsigned int b = 0; b < face.n_nodes; ++b)
+                  face.matrix[a][b] +=
+                    weight * around * here.JxW(q) * jump[a] * jump[b];
+            }
+          faces.push_back(face);
+        }
+  }
+
+  template <int dim>
+  void
+  GhostPenalty<dim>::add_force(const Vector &u,
+                               const double  factor,
+                               Vector       &force) const
+  {
+    for (const auto &face : faces)
+      for (unsigned int c = 0; c < dim; ++c)
+        {
+          std::array<double, max_nodes> values;
+          for (unsigned int b = 0; b < face.n_nodes; ++b)
+            values[b] = factor * u.local_element(dim * face.nodes[b] + c);
+          for (unsigned int a = 0; a < face.n_nodes; ++a)
+            {
+              double sum = 0;
+              for (unsigned int b = 0; b < face.n_nodes; ++b)
+                sum += face.matrix[a][b] * values[b];
+              force.local_element(dim * face.nodes[a] + c) += sum;
+            }
+        }
+  }
+
+  template <int dim>
+  double
+  GhostPenalty<dim>::energy(const Vector &u) const
+  {
+    double sum = 0;
+    for (const auto &face : faces)
+      for (unsigned int c = 0; c < dim; ++c)
+        for (unsigned int a = 0; a < face.n_nodes; ++a)
+          for (unsigned int b = 0; b < face.n_nodes; ++b)
+            sum += 0.5 * face.matrix[a][b] *
+                   u.local_element(dim * face.nodes[a] + c) *
+                   u.local_element(dim * face.nodes[b] + c);
+    return sum;
+  }
+
+  template class GhostPenalty<2>;
+  template class GhostPenalty<3>;
+} // namespace impm

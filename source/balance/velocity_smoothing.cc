@@ -1,0 +1,170 @@
+#include <deal.II/lac/full_matrix.h>
+#include <deal.II/lac/trilinos_sparsity_pattern.h>
+
+#include <impm/balance/velocity_smoothing.h>
+
+namespace impm
+{
+  using namespace dealii;
+
+  template <int dim>
+  VelocitySmoothing<dim>::VelocitySmoothing(
+    const MaterialPoints<dim>  &points,
+    const Footprints<dim>      &footprints,
+    const StepConstraints<dim> &constraints,
+    const BackgroundGrid<dim>  &grid)
+    : points(points)
+    , footprints(footprints)
+    , constraints(constraints)
+    , grid(grid)
+  {
+    grid.initialize(inverse_mass);
+    grid.initialize(change);
+  }
+
+  template <int dim>
+  void
+  VelocitySmoothing<dim>::begin_step(const Vector &mass)
+  {
+    for (unsigned int i = 0; i < mass.locally_owned_size(); ++i)
+      {
+        const double m                = mass.local_element(i);
+        inverse_mass.local_element(i) = m > 0 ? 1 / m : 0.;
+      }
+  }
+
+  template <int dim>
+  void
+  VelocitySmoothing<dim>::apply_derivative(const Vector &u,
+                                           Vector       &result) const
+  {
+    change = u;
+    constraints.interpolate_hanging(change);
+    footprints.interpolate(change, at_points);
+    for (unsigned int p = 0; p < points.size(); ++p)
+      at_points[p] *= points.mass(p);
+    change = 0;
+    footprints.spread(at_points, change);
+    change.compress(VectorOperation::add);
+    constraints.condense_hanging(change);
+    for (unsigned int i = 0; i < result.locally_owned_size(); ++i)
+      result.local_element(i) =
+        constraints.is_constrained[i] ?
+          u.local_element(i) :
+          inverse_mass.local_element(i) * change.local_element(i);
+    constraints.interpolate_hanging(result);
+  }
+
+  template <int dim>
+  void
+  VelocitySmoothing<dim>::apply(const Vector &u,
+                                const Vector &start,
+                                Vector       &result) const
+  {
+    result = u;
+    result -= start;
+    apply_derivative(result, result);
+    for (unsigned int i = 0; i < result.locally_owned_size(); ++i)
+      result.local_element(i) =
+        constraints.is_constrained[i] ?
+          u.local_element(i) :
+          result.local_element(i) + start.local_element(i);
+    constraints.interpolate_hanging(result);
+  }
+
+  template <int dim>
+  std::vector<types::global_dof_index>
+  VelocitySmoothing<dim>::dofs(const typename Footprints<dim>::Patch &patch,
+                               const unsigned int component) const
+  {
+    std::vector<types::global_dof_index> result;
+    for (unsigned int n = patch.begin_nodes; n < patch.end_nodes; ++n)
+      result.push_back(inverse_mass.get_partitioner()->local_to_global(
+        dim * footprints.patch_nodes[n] + component));
+    return result;
+  }
+
+  template <int dim>
+  void
+  VelocitySmoothing<dim>::consistent_mass(
+    const typename Footprints<dim>::Patch &patch,
+    FullMatrix<double>                    &matrix) const
+  {
+    constexpr unsigned int n_nodes = Footprints<dim>::n_nodes;
+    const unsigned int     n       = patch.end_nodes - patch.begin_nodes;
+    dealii::Vector<double> shares(n);
+    matrix.reinit(n, n);
+    for (unsigned int i = patch.begin_points; i < patch.end_points; ++i)
+      {
+        const unsigned int p = footprints.patch_points[i];
+        shares               = 0;
+        for (unsigned int k = footprints.first[p]; k < footprints.first[p + 1];
+             ++k)
+          for (unsigned int v = 0; v < n_nodes; ++v)
+            {
+              const unsigned int e = footprints.entries[k];
+              shares[footprints.place[e * n_nodes + v]] +=
+                footprints.value(e)[v];
+            }
+        for (unsigned int a = 0; a < n; ++a)
+          for (unsigned int b = 0; b < n; ++b)
+            matrix(a, b) += points.mass(p) * shares[a] * shares[b];
+      }
+  }
+
+  template <int dim>
+  void
+  VelocitySmoothing<dim>::assemble()
+  {
+    // Components do not mix.
+    const IndexSet &owned = grid.dof_handler.locally_owned_dofs();
+    TrilinosWrappers::SparsityPattern sparsity(owned,
+                                               owned,
+                                               grid.locally_relevant_dofs,
+                                               grid.communicator);
+    for (const auto &patch : footprints.patches)
+      for (unsigned int c = 0; c < dim; ++c)
+        constraints.constraints.add_entries_local_to_global(dofs(patch, c),
+                                                            sparsity);
+    for (const auto dof : owned)
+      sparsity.add(dof, dof);
+    sparsity.compress();
+    spread_mass.reinit(sparsity);
+
+    FullMatrix<double> local;
+    for (const auto &patch : footprints.patches)
+      {
+        consistent_mass(patch, local);
+        for (unsigned int c = 0; c < dim; ++c)
+          constraints.constraints.distribute_local_to_global(local,
+                                                             dofs(patch, c),
+                                                             spread_mass);
+      }
+    spread_mass.compress(VectorOperation::add);
+
+    // Identity where constrained, whatever condensing has left there.
+    scaling.reinit(owned, grid.communicator);
+    for (unsigned int i = 0; i < inverse_mass.locally_owned_size(); ++i)
+      {
+        const auto dof = inverse_mass.get_partitioner()->local_to_global(i);
+        if (constraints.is_constrained[i])
+          spread_mass.set(dof, dof, 1.);
+        scaling[dof] =
+          constraints.is_constrained[i] ? 1. : inverse_mass.local_element(i);
+      }
+    spread_mass.compress(VectorOperation::insert);
+    scaling.compress(VectorOperation::insert);
+  }
+
+  template <int dim>
+  void
+  VelocitySmoothing<dim>::multiply(
+    const TrilinosWrappers::SparseMatrix &K,
+    TrilinosWrappers::SparseMatrix       &product) const
+  {
+    K.mmult(product, spread_mass, scaling);
+  }
+
+  template class VelocitySmoothing<2>;
+  template class VelocitySmoothing<3>;
+} // namespace impm

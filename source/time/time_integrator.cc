@@ -1,0 +1,196 @@
+#include <impm/time/time_integrator.h>
+
+namespace impm
+{
+  namespace
+  {
+    class QuasiStatic : public TimeIntegrator
+    {
+    public:
+      bool
+      has_inertia() const override
+      {
+        return false;
+      }
+
+      double
+      mass_factor(double) const override
+      {
+        return 0;
+      }
+
+      double
+      force_factor() const override
+      {
+        return 1;
+      }
+
+      void
+      known_acceleration(double,
+                         const Vector &,
+                         const Vector &,
+                         Vector &known) const override
+      {
+        known = 0;
+      }
+
+      void
+      end_motion(double,
+                 const Vector &,
+                 const Vector &,
+                 const Vector &,
+                 Vector &,
+                 Vector &) const override
+      {}
+    };
+
+    /**
+     * Sulsky & Kaul (2004), eq. 2.4.1 with u = dt v^L (eq. 2.3.2): positions
+     * move with the velocity at the end of the step whatever theta is. Explicit
+     * with theta = 0 (section 2.3.1).
+     */
+    class Theta : public TimeIntegrator
+    {
+    public:
+      explicit Theta(const double theta)
+        : theta(theta)
+      {}
+
+      bool
+      has_inertia() const override
+      {
+        return true;
+      }
+
+      double
+      mass_factor(const double dt) const override
+      {
+        return 1 / (dt * dt);
+      }
+
+      double
+      force_factor() const override
+      {
+        return theta;
+      }
+
+      void
+      known_acceleration(const double  dt,
+                         const Vector &velocity,
+                         const Vector &,
+                         Vector &known) const override
+      {
+        known.equ(1 / dt, velocity);
+      }
+
+      void
+      end_motion(const double  dt,
+                 const Vector &u,
+                 const Vector &,
+                 const Vector &,
+                 Vector &end_velocity,
+                 Vector &) const override
+      {
+        end_velocity.equ(1 / dt, u);
+      }
+
+    private:
+      const double theta;
+    };
+
+    /**
+     * Newmark's method (Guilkey & Weiss 2003, eq. 14 to 16, for beta = 1/4,
+     * gamma = 1/2):
+     *
+     *   u       = dt v + dt^2 ((1/2 - beta) a + beta a_end),
+     *   v_end   = v + dt ((1 - gamma) a + gamma a_end),
+     *   m a_end = -f(u).
+     *
+     * The acceleration a at the start is either what the points carry, or
+     * -f(0) / m on the grid as it is: then m a_end + f(u) = 0, divided by
+     * 1 / (2 beta), has no acceleration in it.
+     */
+    class Newmark : public TimeIntegrator
+    {
+    public:
+      Newmark(const double beta, const double gamma, const bool keeps)
+        : beta(beta)
+        , gamma(gamma)
+        , keeps(keeps)
+      {}
+
+      bool
+      has_inertia() const override
+      {
+        return true;
+      }
+
+      bool
+      keeps_acceleration() const override
+      {
+        return keeps;
+      }
+
+      double
+      mass_factor(const double dt) const override
+      {
+        return (keeps ? 1 / beta : 2) / (dt * dt);
+      }
+
+      double
+      force_factor() const override
+      {
+        return keeps ? 1 : 2 * beta;
+      }
+
+      void
+      known_acceleration(const double  dt,
+                         const Vector &velocity,
+                         const Vector &acceleration,
+                         Vector       &known) const override
+      {
+        if (keeps)
+          {
+            known.equ(1 / (beta * dt), velocity);
+            known.add(1 / (2 * beta) - 1, acceleration);
+          }
+        else
+          known.equ(2 / dt, velocity);
+      }
+
+      void
+      end_motion(const double  dt,
+                 const Vector &u,
+                 const Vector &velocity,
+                 const Vector &acceleration,
+                 Vector       &end_velocity,
+                 Vector       &end_acceleration) const override
+      {
+        end_acceleration.equ(1 / (beta * dt * dt), u);
+        end_acceleration.add(-1 / (beta * dt), velocity);
+        end_acceleration.add(1 - 1 / (2 * beta), acceleration);
+        end_velocity = velocity;
+        end_velocity.add(dt * (1 - gamma), acceleration);
+        end_velocity.add(dt * gamma, end_acceleration);
+      }
+
+    private:
+      const double beta, gamma;
+      const bool   keeps;
+    };
+  } // namespace
+
+  std::unique_ptr<TimeIntegrator>
+  make_time_integrator(const TimeSpec &spec)
+  {
+    if (spec.integrator == "explicit")
+      return std::make_unique<Theta>(0);
+    if (spec.integrator == "theta")
+      return std::make_unique<Theta>(spec.theta);
+    if (spec.integrator == "Newmark")
+      return std::make_unique<Newmark>(spec.beta,
+                                       spec.gamma,
+                                       spec.keeps_acceleration);
+    return std::make_unique<QuasiStatic>();
+  }
+} // namespace impm

@@ -1,0 +1,434 @@
+#include <impm/solve/difference_quotient.h>
+
+#include <gtest/gtest.h>
+
+#include "scene_fixture.h"
+
+using namespace dealii;
+using namespace impm;
+
+namespace
+{
+  using impm::Vector;
+
+  // Part of the grid only, so that the ghost penalty has faces to work on;
+  // held on the left, where increments are not zero.
+  const Overrides part_of_the_grid = {
+    "Boundary conditions/bottom/Type=slip",
+    "Boundary conditions/left/Type=normal displacement",
+    "Boundary conditions/left/Value=0.004*t*y"};
+
+  Overrides
+  small_block(const unsigned int dim)
+  {
+    const std::string third = dim == 3 ? ", 0.8" : "";
+    return part_of_the_grid +
+           (dim == 3 ? Overrides{"Boundary conditions/back/Type=slip"} :
+                       Overrides{}) +
+           Overrides{"Geometry/box/Upper corner=0.7, 0.6" + third,
+                     "Loads/Body force=0.01*y; -0.02" +
+                       std::string(dim == 3 ? "; 0.01" : "")};
+  }
+
+  // Central difference of fourth order at 0.
+  template <typename Function>
+  auto
+  derivative(const Function &f, const double h)
+  {
+    auto sum = f(h);
+    sum -= f(-h);
+    sum *= 8.;
+    sum -= f(2 * h);
+    sum += f(-2 * h);
+    sum *= 1. / (12 * h);
+    return sum;
+  }
+
+  // Largest deviations, relative.
+  struct Deviations
+  {
+    double residual, tangent, matrix, symmetry, diagonal, lift;
+  };
+
+  template <int dim>
+  Deviations
+  deviations(Model<dim> &model, const Vector &u)
+  {
+    auto        &balance = model.balance;
+    const Vector s = model.random_direction(11), w = model.random_direction(12);
+
+    const auto at = [&](const double h) {
+      Vector x = u;
+      x.add(h, s);
+      const auto result = balance.evaluate(x, false);
+      EXPECT_TRUE(result.admissible);
+      return result.potential;
+    };
+    const auto residual_at = [&](const double h) {
+      at(h);
+      return balance.residual();
+    };
+    const double h = 2e-6;
+    // Near enough that no point begins to yield in between.
+    const double slope      = derivative(at, 1e-5);
+    const Vector difference = derivative(residual_at, h);
+
+    EXPECT_TRUE(balance.evaluate(u).admissible);
+    Deviations   result;
+    const double exact_slope = balance.work_along(s, balance.residual());
+    result.residual          = std::abs(slope - exact_slope) /
+                      (balance.residual().l2_norm() * s.l2_norm());
+
+    Vector s_free = s, w_free = w;
+    balance.constraints.set_zero(s_free);
+    balance.constraints.set_zero(w_free);
+    Vector       Ks = model.vector(), Kw = model.vector();
+    const Vector before = s_free;
+    balance.vmult(Ks, s_free);
+    balance.vmult(Kw, w_free);
+    EXPECT_EQ((Vector(before) -= s_free).l2_norm(), 0.);
+    Vector error = difference;
+    error -= Ks;
+    result.tangent  = error.linfty_norm() / Ks.linfty_norm();
+    result.symmetry = std::abs(balance.work_along(w_free, Ks) -
+                               balance.work_along(s_free, Kw)) /
+                      (w_free.l2_norm() * Ks.l2_norm());
+
+    // identity on what is constrained
+    Vector mixed = s_free;
+    for (unsigned int i = 0; i < mixed.locally_owned_size(); ++i)
+      if (balance.constraints.is_constrained[i])
+        mixed.local_element(i) = 7;
+    Vector image = model.vector();
+    balance.vmult(image, mixed);
+    for (unsigned int i = 0; i < mixed.locally_owned_size(); ++i)
+      EXPECT_EQ(image.local_element(i),
+                balance.constraints.is_constrained[i] ? 7. :
+                                                        Ks.local_element(i));
+
+    TrilinosWrappers::SparseMatrix matrix;
+    balance.initialize_matrix(matrix);
+    balance.assemble(matrix);
+    Vector product = model.vector();
+    balance.vmult_by_matrix(matrix, product, s_free);
+    product -= Ks;
+    result.matrix = product.linfty_norm() / Ks.linfty_norm();
+
+    // A matrix that is filled twice is the same.
+    balance.assemble(matrix);
+    Vector again = model.vector();
+    balance.vmult_by_matrix(matrix, again, s_free);
+    balance.constraints.set_zero(again);
+    again -= Ks;
+    result.matrix =
+      std::max(result.matrix, again.linfty_norm() / Ks.linfty_norm());
+
+    Vector diagonal = model.vector();
+    balance.diagonal(diagonal);
+    double difference_of_diagonals = 0, largest = 0;
+    for (unsigned int i = 0; i < diagonal.locally_owned_size(); ++i)
+      {
+        const auto dof = diagonal.get_partitioner()->local_to_global(i);
+        if (balance.constraints.is_constrained[i])
+          {
+            EXPECT_EQ(diagonal.local_element(i), 1.);
+            continue;
+          }
+        EXPECT_GT(diagonal.local_element(i), 0.);
+        largest                 = std::max(largest, matrix.diag_element(dof));
+        difference_of_diagonals = std::max(difference_of_diagonals,
+                                           std::abs(matrix.diag_element(dof) -
+                                                    diagonal.local_element(i)));
+      }
+    const MPI_Comm comm = model.grid.communicator;
+    result.diagonal     = Utilities::MPI::max(difference_of_diagonals, comm) /
+                      Utilities::MPI::max(largest, comm);
+
+    // The lift of prescribed values: the derivative along them.
+    Vector lift = model.random(13, 1.);
+    for (unsigned int i = 0; i < lift.locally_owned_size(); ++i)
+      if (!balance.constraints.is_constrained[i])
+        lift.local_element(i) = 0;
+    balance.constraints.interpolate_hanging(lift);
+    Vector pushed = model.vector();
+    balance.vmult_lift(pushed, lift);
+    error = derivative(
+      [&](const double k) {
+        Vector x = u;
+        x.add(k, lift);
+        EXPECT_TRUE(balance.evaluate(x, false).admissible);
+        return balance.residual();
+      },
+      h);
+    error -= pushed;
+    result.lift = error.linfty_norm() / pushed.linfty_norm();
+    return result;
+  }
+
+  // At the second of two random steps, points anywhere.
+  template <int dim>
+  void
+  check_scene(const std::string &text,
+              const std::string &kind,
+              const Overrides   &overrides,
+              const double       size)
+  {
+    Model<dim>  model(text, small_block(dim) + overrides);
+    std::string all = kind;
+    for (const auto &override : overrides)
+      all += ", " + override;
+    SCOPED_TRACE(all);
+    model.scatter_points(1);
+
+    model.begin_step();
+    Vector u = model.random_increment(1, size);
+    ASSERT_TRUE(model.balance.evaluate(u).admissible);
+    model.commit(u);
+
+    model.begin_step();
+    u                     = model.random_increment(2, size);
+    const auto  deviation = deviations(model, u);
+    const auto &law       = *model.scene.bodies[0].material;
+    const bool  momentum  = model.scene.time.momentum_formulation;
+    EXPECT_LT(deviation.tangent, 1e-7);
+    EXPECT_LT(deviation.lift, 1e-7);
+    EXPECT_LT(deviation.matrix, 1e-13);
+    if (law.has_potential())
+      EXPECT_LT(deviation.residual, 1e-8);
+    if (law.has_symmetric_tangent())
+      EXPECT_LT(deviation.symmetry, 1e-14);
+    else
+      EXPECT_GT(deviation.symmetry, 1e-6);
+    if (model.grid.hanging_nodes.n_constraints() == 0 && !momentum)
+      EXPECT_LT(deviation.diagonal, 1e-13);
+  }
+
+  template <int dim>
+  void
+  check(const std::string &kind, const Overrides &overrides, const double size)
+  {
+    check_scene<dim>(block_scene(kind), kind, overrides, size);
+  }
+
+  const Overrides trapezoidal   = {"Time/Integrator=theta",
+                                   "Time/Theta=0.5",
+                                   "Time/Time step=0.3",
+                                   "Bodies/block/Velocity=0.01*y; 0.02"};
+  const Overrides boxes         = {"Grid/Method=GIMP"};
+  const Overrides f_bar         = {"Materials/rubber/F-bar=true"};
+  const Overrides without_ghost = {"Stabilization/Ghost penalty=0"};
+} // namespace
+
+
+TEST(MomentumBalanceMpi, DerivativesElastic)
+{
+  check<2>("plane strain", {}, 0.03);
+  check<2>("plane strain", refined, 0.015);
+  check<2>("axisymmetric", refined + without_ghost, 0.015);
+  check<3>("3D", {"Grid/Cells=2, 2, 2"}, 0.03);
+}
+
+
+TEST(MomentumBalanceMpi, DerivativesPlastic)
+{
+  for (const std::string kind : {"plane strain", "axisymmetric"})
+    {
+      check<2>(kind, plastic, 0.02);
+      check<2>(kind, plastic + refined, 0.01);
+    }
+  check<3>("3D", plastic + Overrides{"Grid/Cells=2, 3, 2"}, 0.02);
+  check<3>("3D", plastic + refined + Overrides{"Grid/Cells=3, 2, 2"}, 0.01);
+}
+
+
+TEST(MomentumBalanceMpi, DerivativesOfRateLaws)
+{
+  const std::string law = "Materials/rubber/Law=";
+  for (const std::string name : {"linear", "Jaumann"})
+    {
+      const Overrides elastic = {law + name + " elastic"};
+      const Overrides yields  = plastic + Overrides{law + name + " von Mises"};
+      check<2>("plane strain", elastic + refined, 0.015);
+      check<2>("plane strain", yields + boxes, 0.01);
+      check<2>("axisymmetric", elastic + trapezoidal, 0.01);
+      check<2>("axisymmetric", yields + refined, 0.01);
+      check<2>("plane stress", yields + trapezoidal + refined, 0.01);
+      check<3>("3D", yields + Overrides{"Grid/Cells=2, 3, 2"}, 0.02);
+    }
+  const Overrides coarse = {"Grid/Cells=2, 2, 2"};
+  check_scene<2>(fluid_scene("plane strain"), "fluid", refined, 0.01);
+  check_scene<2>(fluid_scene("axisymmetric"), "fluid", trapezoidal, 0.01);
+  check_scene<3>(fluid_scene("3D"), "fluid", coarse, 0.01);
+}
+
+
+TEST(MomentumBalanceMpi, DerivativesInPlaneStress)
+{
+  check<2>("plane stress", {}, 0.03);
+  check<2>("plane stress", plastic + refined, 0.01);
+  check<2>("plane stress", boxes + trapezoidal, 0.01);
+  check<2>("plane stress", {"Materials/rubber/Law=neo-Hookean"}, 0.02);
+  check<2>("plane stress",
+           {"Grid/Method=Lagrangian", "Geometry/box/Upper corner=0.75, 0.5"},
+           0.01);
+}
+
+
+TEST(MomentumBalanceMpi, DerivativesWithInertia)
+{
+  const Overrides in_space = {"Grid/Cells=2, 2, 2",
+                              "Bodies/block/Velocity=0.01*y; 0.02; -0.01*x"};
+  check<2>("plane strain", trapezoidal + plastic, 0.02);
+  check<2>("axisymmetric", trapezoidal + refined, 0.01);
+  check<3>("3D", trapezoidal + plastic + refined + in_space, 0.01);
+}
+
+
+TEST(MomentumBalanceMpi, DerivativesOfBoxes)
+{
+  check<2>("plane strain", boxes, 0.03);
+  check<2>("plane strain", boxes + refined + plastic, 0.01);
+  check<2>("axisymmetric",
+           boxes + refined + trapezoidal + Overrides{"Grid/Boxes=fixed"},
+           0.01);
+  check<3>("3D", boxes + refined + Overrides{"Grid/Cells=3, 2, 2"}, 0.01);
+}
+
+
+TEST(MomentumBalanceMpi, DerivativesOfFiniteElements)
+{
+  const Overrides fitted = {"Grid/Method=Lagrangian",
+                            "Geometry/box/Upper corner=0.75, 0.5"};
+  const Overrides skew   = {"Grid/Map=x + 0.1*y; y*(1 - 0.2*x)",
+                            "Geometry/box/Lower corner=-9, -9",
+                            "Geometry/box/Upper corner=9, 9",
+                            "Boundary conditions/right/Type=traction",
+                            "Boundary conditions/right/Value=0; 0.01*y"};
+  check<2>("plane strain", fitted + refined, 0.01);
+  check<2>("plane strain", fitted + skew + f_bar, 0.01);
+  check<2>("axisymmetric", fitted + skew + trapezoidal + plastic, 0.01);
+  check<3>("3D",
+           fitted + refined +
+             Overrides{"Grid/Cells=3, 2, 2",
+                       "Geometry/box/Upper corner=9, 0.5, 1"},
+           0.01);
+}
+
+
+TEST(MomentumBalanceMpi, DerivativesWithMeanVolume)
+{
+  const Overrides nearly_incompressible = {
+    "Materials/rubber/Poisson's ratio=0.49"};
+  for (const std::string kind : {"plane strain", "axisymmetric"})
+    {
+      check<2>(kind, f_bar, 0.02);
+      check<2>(kind, f_bar + plastic + refined, 0.01);
+      check<2>(kind, f_bar + nearly_incompressible, 0.005);
+      check<2>(kind, f_bar + boxes + refined, 0.01);
+    }
+  check<3>("3D", f_bar + plastic + Overrides{"Grid/Cells=2, 3, 2"}, 0.02);
+  check<3>("3D", f_bar + boxes + Overrides{"Grid/Cells=2, 2, 2"}, 0.01);
+}
+
+
+TEST(MomentumBalanceMpi, DerivativesWithNewmark)
+{
+  Overrides newmark = {"Time/Integrator=Newmark",
+                       "Time/Beta=0.3",
+                       "Time/Gamma=0.6",
+                       "Time/Time step=0.3",
+                       "Bodies/block/Velocity=0.01*y; 0.02"};
+  for (const std::string from : {"grid", "points"})
+    for (const std::string transfer : {"FLIP", "PIC", "APIC"})
+      check<2>("plane strain",
+               newmark + Overrides{"Time/Acceleration from=" + from,
+                                   "Time/Transfer=" + transfer},
+               0.02);
+}
+
+
+TEST(MomentumBalanceMpi, DerivativesOfMomentumFormulation)
+{
+  const Overrides momentum = {"Time/Formulation=momentum"};
+  const Overrides in_space = {"Grid/Cells=2, 2, 2",
+                              "Bodies/block/Velocity=0.01*y; 0.02; -0.01*x"};
+  check<2>("plane strain", trapezoidal + momentum, 0.02);
+  check<2>("axisymmetric", trapezoidal + momentum + refined + plastic, 0.01);
+  check<2>("plane strain",
+           trapezoidal + momentum + refined + boxes + f_bar,
+           0.01);
+  check<2>("axisymmetric", trapezoidal + momentum + refined + boxes, 0.01);
+  check<3>("3D", trapezoidal + momentum + in_space + refined, 0.01);
+  check<3>("3D",
+           trapezoidal + momentum + in_space + refined + boxes +
+             Overrides{"Grid/Cells=3, 2, 2"},
+           0.01);
+}
+
+
+// A quotient of residuals instead of the tangent: the error is that of the
+// quotient.
+TEST(MomentumBalanceMpi, DifferenceQuotient)
+{
+  for (const std::string formulation : {"velocity", "momentum"})
+    {
+      Model<2> model(block_scene("plane strain"),
+                     small_block(2) + refined + trapezoidal +
+                       Overrides{"Time/Formulation=" + formulation,
+                                 "Solver/Linear solver=GMRES"});
+      model.scatter_points(1);
+      model.begin_step();
+      const impm::Vector u     = model.random_increment(1, 0.01);
+      const impm::Vector s     = model.random_direction(2);
+      impm::Vector       exact = model.vector(), approximate = model.vector();
+      ASSERT_TRUE(model.balance.evaluate(u).admissible);
+      model.balance.vmult(exact, s);
+      std::vector<double> errors;
+      for (const double h : {1e-3, 1e-4})
+        {
+          DifferenceQuotient<2> quotient(model.balance, h);
+          model.balance.evaluate(u);
+          quotient.linearize_at(u);
+          quotient.vmult(approximate, s);
+          approximate -= exact;
+          errors.push_back(approximate.l2_norm() / exact.l2_norm());
+        }
+      EXPECT_LT(errors[1], 1e-4);
+      EXPECT_NEAR(errors[0] / errors[1], 10., 0.5);
+    }
+}
+
+
+// The ghost penalty counts on a face as often as it should: for a field with a
+// kink over one face its energy is known.
+TEST(MomentumBalanceMpi, GhostPenaltyOfAKink)
+{
+  for (const bool fine_in_part : {false, true})
+    {
+      // Points in the columns of cells left of x = 0.5; u = k (x - 0.25)^+.
+      Overrides overrides = {"Geometry/box/Upper corner=0.5, 1"};
+      if (fine_in_part)
+        overrides = overrides + Overrides{"Grid/Local refinements=1",
+                                          "Grid/Refine where=0.2 - x"};
+      Model<2> model(block_scene("plane strain"), overrides);
+      model.begin_step();
+      const double k = 1e-4;
+      auto         u = model.vector();
+      for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
+        if (i % 2 == 1)
+          u.local_element(i) =
+            k * std::max(0., model.grid.node_positions()[i / 2][0] - 0.25);
+      model.balance.constraints.interpolate_hanging(u);
+      GhostPenalty<2> ghost;
+      ghost.build(model.balance.populated,
+                  model.grid,
+                  model.scene.geometry,
+                  0.03);
+      // gamma E h (jump)^2 / 2 on a face of length 1; h of the finer side
+      const double h = fine_in_part ? 0.125 : 0.25;
+      EXPECT_NEAR(Utilities::MPI::sum(ghost.energy(u), MPI_COMM_WORLD) /
+                    (0.5 * 0.03 * h * k * k),
+                  1.,
+                  1e-11);
+    }
+}

@@ -1,0 +1,219 @@
+#include <impm/base/exceptions.h>
+#include <impm/run/simulation.h>
+
+#include <gtest/gtest.h>
+
+#include "scene_fixture.h"
+
+using namespace dealii;
+using namespace impm;
+
+namespace
+{
+  const std::string plane = block_scene("plane strain");
+
+  const Overrides second_body = {"Geometry/Shapes=box, other",
+                                 "Geometry/other/Lower corner=0.4, 0.4",
+                                 "Geometry/other/Upper corner=0.9, 0.9",
+                                 "Bodies/Names=block, second",
+                                 "Bodies/second/Shape=other",
+                                 "Bodies/second/Material=rubber"};
+
+  // Building a simulation must fail, and blame an entry.
+  void
+  expect_blame(const Overrides                &overrides,
+               const std::string              &entry,
+               const std::vector<std::string> &words)
+  {
+    std::string all;
+    for (const auto &override : overrides)
+      all += override + ", ";
+    SCOPED_TRACE(all);
+    try
+      {
+        const auto          scene = scene_from<2>(plane, overrides);
+        const Simulation<2> simulation(scene,
+                                       CommandLine::Verbosity::quiet,
+                                       MPI_COMM_WORLD);
+        FAIL() << "is taken";
+      }
+    catch (const InputError &error)
+      {
+        EXPECT_EQ(error.entry, entry);
+        for (const auto &word : words)
+          EXPECT_NE(std::string(error.what()).find(word), std::string::npos)
+            << "found '" << error.what() << "', expected '" << word << "'";
+      }
+  }
+} // namespace
+
+
+TEST(SceneMpi, BodiesThatDoNotFit)
+{
+  // all of the second lies in the first
+  expect_blame(second_body,
+               "Bodies/block/Shape",
+               {"overlap", "'block'", "'second'"});
+  // slivers that miss every point
+  expect_blame({"Geometry/box/Upper corner=0.01, 1"},
+               "Bodies/block/Shape",
+               {"no points"});
+  expect_blame({"Geometry/box/Upper corner=1.5, 1"},
+               "Bodies/block/Shape",
+               {"1.5", "allowed"});
+}
+
+
+// The overlap is seen whichever body has points in it.
+TEST(SceneMpi, ARigidBodyThatOverlaps)
+{
+  expect_blame({"Geometry/Shapes=box, other",
+                "Geometry/other/Lower corner=0.4, 0.4",
+                "Geometry/other/Upper corner=0.9, 0.9",
+                "Bodies/Names=block, tool",
+                "Bodies/tool/Kind=rigid",
+                "Bodies/tool/Shape=other"},
+               "Bodies/block/Shape",
+               {"overlap"});
+}
+
+
+TEST(Scene, UnknownNames)
+{
+  expect_blame({"Bodies/block/Shape=bocks"},
+               "Bodies/block/Shape",
+               {"'bocks'", "allowed", "box"});
+  expect_blame({"Bodies/block/Material=steel"},
+               "Bodies/block/Material",
+               {"'steel'", "rubber"});
+  expect_blame({"Output/Reactions=load",
+                "Output/load/On=top",
+                "Output/load/Direction=0, 1"},
+               "Output/load/On",
+               {"'top'", "none"});
+  expect_blame({"Output/Probes=p",
+                "Output/p/Position=0, 0",
+                "Output/p/Field=temperature"},
+               "Output/p/Field",
+               {"'temperature'"});
+  expect_blame({"Output/Probes=p",
+                "Output/p/Kind=mean",
+                "Output/p/Field=von_mises_stress",
+                "Output/p/Bodies=rock"},
+               "Output/p/Bodies",
+               {"'rock'", "block"});
+  expect_blame({"Output/Probes=p", "Output/p/Kind=motion", "Output/p/Of=top"},
+               "Output/p/Of",
+               {"'top'"});
+  expect_blame({"Bodies/Names=block, block"},
+               "Bodies/Names",
+               {"'block'", "taken"});
+}
+
+
+TEST(Scene, ValuesThatCannotBe)
+{
+  expect_blame({"Grid/Upper corner=0, 1"},
+               "Grid/Upper corner",
+               {"'0, 1'", "allowed"});
+  expect_blame({"Grid/Upper corner=1, 1, 1"}, "Grid/Upper corner", {"2"});
+  expect_blame({"Boundary conditions/top/Type=velocity",
+                "Boundary conditions/top/Value=1"},
+               "Boundary conditions/top/Value",
+               {"'1'", "2 expressions"});
+  expect_blame({"Boundary conditions/top/Type=normal velocity",
+                "Boundary conditions/top/Value=speed"},
+               "Boundary conditions/top/Value",
+               {"'speed'"});
+  expect_blame({"Boundary conditions/top/Type=velocity"},
+               "Boundary conditions/top/Value",
+               {"found ''"});
+  expect_blame({"General/Constants=speed"},
+               "General/Constants",
+               {"'speed'", "name = number"});
+  expect_blame({"Time/Largest time step=0.5"},
+               "Time/Largest time step",
+               {"0.5"});
+  expect_blame({"Geometry/Kind=axisymmetric", "Grid/Lower corner=-1, 0"},
+               "Grid/Lower corner",
+               {"radius"});
+  // outside what the pattern of the entry allows: with the line
+  expect_blame({"Grid/Cells=0, 4"}, "", {"Cells"});
+  expect_blame({"Grid/Refine where=x"}, "", {"Refine where"}); // unrefined
+}
+
+
+TEST(Scene, LawsThatDoNotFit)
+{
+  const Overrides jaumann = {"Materials/rubber/Law=Jaumann elastic"};
+  expect_blame(jaumann + Overrides{"Solver/Linear solver=CG"},
+               "Solver/Linear solver",
+               {"'CG'", "symmetric", "'block'", "GMRES"});
+  const Overrides f_bar = {"Materials/rubber/F-bar=true"};
+  for (const std::string law : {"Jaumann elastic", "linear elastic"})
+    expect_blame(f_bar + Overrides{"Materials/rubber/Law=" + law},
+                 "Materials/rubber/F-bar",
+                 {"'true'", law, "energy"});
+  expect_blame(f_bar + Overrides{"Geometry/Kind=plane stress"},
+               "Materials/rubber/F-bar",
+               {"'true'", "plane stress"});
+  const Overrides softening = {"Materials/rubber/Law=linear von Mises",
+                               "Materials/rubber/Yield stress=0.01",
+                               "Materials/rubber/Limit strain=0.1"};
+  expect_blame(softening + Overrides{"Materials/rubber/Softening modulus=2"},
+               "Materials/rubber/Softening modulus",
+               {"'2'", "shear"});
+  EXPECT_NO_THROW(scene_from<2>(
+    plane, softening + Overrides{"Materials/rubber/Softening modulus=1"}));
+  const auto blame = [](const Overrides &overrides) -> std::string {
+    try
+      {
+        scene_from<2>(fluid_scene("plane strain"), overrides);
+        return "";
+      }
+    catch (const InputError &error)
+      {
+        return error.entry;
+      }
+  };
+  EXPECT_EQ(blame({}), "");
+  EXPECT_EQ(blame({"Geometry/Kind=plane stress"}), "Materials/rubber/Law");
+  EXPECT_EQ(blame({"Materials/rubber/Second viscosity=-0.3"}),
+            "Materials/rubber/Second viscosity");
+  EXPECT_EQ(blame({"Solver/Linear solver=CG"}), "Solver/Linear solver");
+}
+
+
+TEST(Scene, IsWhatTheFileSays)
+{
+  const auto scene = scene_from<2>(
+    plane,
+    plastic + with_inertia + refined +
+      Overrides{"General/Constants=speed = 3",
+                "Time/Theta=0.75",
+                "Boundary conditions/top/Type=velocity",
+                "Boundary conditions/top/Value=x; -speed*t",
+                "Boundary conditions/top/Moves the grid=true",
+                "Boundary conditions/left/Type=slip",
+                "Boundary conditions/right/Type=normal displacement",
+                "Boundary conditions/right/Value=speed",
+                "Loads/Body force=0; -9.81"});
+  EXPECT_TRUE(scene.has_inertia());
+  EXPECT_EQ(scene.time.theta, 0.75);
+  EXPECT_EQ(scene.bodies.size(), 1u);
+  EXPECT_EQ(scene.bodies[0].material->density, 1.);
+  EXPECT_EQ(scene.grid.refinement_levels, 1u);
+  const auto &left = scene.faces[0], &right = scene.faces[1],
+             &bottom = scene.faces[2], &top = scene.faces[3];
+  EXPECT_TRUE(left.constrained[0] && !left.constrained[1] && !left.value);
+  EXPECT_TRUE(right.constrained[0] && !right.constrained[1]);
+  EXPECT_FALSE(right.is_velocity || right.moves_grid);
+  EXPECT_EQ(right.value->value({0.3, 0.2}), 3.);
+  EXPECT_FALSE(bottom.constrained[0] || bottom.constrained[1]);
+  EXPECT_TRUE(top.constrained[0] && top.constrained[1]);
+  EXPECT_TRUE(top.is_velocity && top.moves_grid);
+  top.value->set_time(2.);
+  EXPECT_EQ(top.value->value({0.3, 0.2}, 0), 0.3);
+  EXPECT_EQ(top.value->value({0.3, 0.2}, 1), -6.);
+  EXPECT_EQ(scene.body_force->value({0, 0}, 1), -9.81);
+}

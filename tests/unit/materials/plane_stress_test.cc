@@ -1,0 +1,244 @@
+#include <impm/balance/plane_stress.h>
+
+#include <gtest/gtest.h>
+
+#include "law_fixture.h"
+#include "material_fixture.h"
+#include "scene_fixture.h"
+
+using namespace dealii;
+using namespace impm;
+
+namespace
+{
+  class Sheet : public LawPoint
+  {
+  public:
+    explicit Sheet(Material &law)
+      : LawPoint(law, GeometryKind::plane_stress)
+    {}
+
+    bool
+    evaluate(const Tensor<2, 3> &increment)
+    {
+      deformation.increment = increment;
+      deformation.dt        = dt;
+      const bool fine       = plane_stress.evaluate(law,
+                                              F,
+                                              history.data(),
+                                              trial_history.data(),
+                                              deformation,
+                                              response,
+                                              spatial.data());
+      trial_F               = deformation.total;
+      return fine;
+    }
+
+    // P and dP/d(dF) of the plane.
+    std::pair<std::array<double, 4>, std::array<double, 16>>
+    carried_back(const Tensor<2, 3> &increment)
+    {
+      EXPECT_TRUE(evaluate(increment));
+      EXPECT_LT(std::abs(response.kirchhoff_stress[2][2]), 1e-13);
+      const auto            inverse = law.form() == Material::Form::linearized ?
+                                        diagonal(1, 1, 1) :
+                                        invert(increment);
+      Kinematics<2>::List   P;
+      Kinematics<2>::Matrix A;
+      const Kinematics<2>   kinematics(false);
+      kinematics.carry_back_stress(response.kirchhoff_stress,
+                                   inverse,
+                                   1.,
+                                   P.data());
+      kinematics.carry_back_tangent(spatial.data(), inverse, 1., A.data());
+      std::pair<std::array<double, 4>, std::array<double, 16>> result;
+      std::copy_n(P.begin(), 4, result.first.begin());
+      std::copy_n(A.begin(), 16, result.second.begin());
+      return result;
+    }
+
+    PlaneStress           plane_stress;
+    Material::Deformation deformation;
+    PlaneStress::Matrix   spatial;
+  };
+
+  Tensor<2, 3>
+  in_the_plane(std::mt19937 &generator, const double size)
+  {
+    auto F  = random_gradient(generator, true, size);
+    F[2][2] = 1;
+    return F;
+  }
+} // namespace
+
+
+TEST(PlaneStress, UniaxialTensionInClosedForm)
+{
+  const double nu = 0.3, G = unit_elasticity.shear,
+               lame = unit_elasticity.lame();
+  for (const auto &[name, law] : all_solids())
+    {
+      double axial = 1.3, side = 0, stress = 0;
+      if (name == "log-strain elastic")
+        {
+          side   = std::pow(axial, -nu);
+          stress = std::log(axial);
+        }
+      else if (name == "neo-Hookean")
+        {
+          side   = 0.9;
+          axial  = std::exp(-G * (side * side - 1) / lame) / (side * side);
+          stress = G * (axial * axial - side * side);
+        }
+      else if (name == "linear elastic")
+        {
+          side   = 1 - nu * (axial - 1);
+          stress = axial - 1;
+        }
+      else
+        continue;
+      Sheet sheet(*law);
+      ASSERT_TRUE(sheet.evaluate(diagonal(axial, side, 1.)));
+      EXPECT_NEAR(sheet.trial_F[2][2], side, 1e-14) << name;
+      auto expected  = SymmetricTensor<2, 3>();
+      expected[0][0] = stress;
+      EXPECT_LT((sheet.response.kirchhoff_stress - expected).norm(), 1e-14)
+        << name;
+      EXPECT_LT(sheet.plane_stress.n_evaluations, 8u) << name;
+    }
+}
+
+
+TEST(PlaneStress, TangentsAreDerivatives)
+{
+  std::mt19937 generator(1);
+  for (const auto &[name, law] : all_solids())
+    for (unsigned int n = 0; n < 6; ++n)
+      {
+        SCOPED_TRACE(name + ", " + std::to_string(n));
+        Sheet sheet(*law);
+        for (unsigned int past = 0; past < n; ++past)
+          {
+            ASSERT_TRUE(sheet.evaluate(in_the_plane(generator, 0.05)));
+            sheet.commit();
+          }
+        const auto   increment = in_the_plane(generator, 0.15);
+        const auto   here      = sheet.carried_back(increment);
+        const double thickness = sheet.trial_F[2][2];
+        EXPECT_GT(std::abs(thickness - 1), 1e-3);
+        double tangent = 0, stress = 0, asymmetry = 0;
+        for (unsigned int b = 0; b < 4; ++b)
+          {
+            const auto at = [&](const double h) {
+              auto moved = increment;
+              moved[b / 2][b % 2] += h;
+              return moved;
+            };
+            for (unsigned int a = 0; a < 4; ++a)
+              {
+                tangent =
+                  std::max(tangent,
+                           std::abs(
+                             here.second[4 * a + b] -
+                             derivative(
+                               [&](const double h) {
+                                 return sheet.carried_back(at(h)).first[a];
+                               },
+                               1e-4)));
+                asymmetry = std::max(asymmetry,
+                                     std::abs(here.second[4 * a + b] -
+                                              here.second[4 * b + a]));
+              }
+            stress = std::max(stress,
+                              std::abs(here.first[b] -
+                                       derivative(
+                                         [&](const double h) {
+                                           sheet.evaluate(at(h));
+                                           return sheet.response.potential;
+                                         },
+                                         1e-3)));
+          }
+        EXPECT_LT(tangent, 1e-9);
+        if (law->has_potential())
+          {
+            EXPECT_LT(stress, 1e-10);
+          }
+        if (law->has_symmetric_tangent())
+          {
+            EXPECT_LT(asymmetry, 1e-14);
+          }
+      }
+}
+
+
+TEST(PlaneStress, LargeSteps)
+{
+  for (const auto &[name, law] : all_solids())
+    for (const auto &F : {diagonal(3., 1., 1.),
+                          diagonal(0.3, 1., 1.),
+                          diagonal(2., 2., 1.),
+                          diagonal(0.5, 0.5, 1.)})
+      {
+        Sheet sheet(*law);
+        // with small strains a sheet can vanish
+        if (!sheet.evaluate(F))
+          {
+            EXPECT_EQ(law->form(), Material::Form::linearized) << name << F;
+            continue;
+          }
+        EXPECT_GT(determinant(sheet.trial_F), 0.);
+        EXPECT_LT(std::abs(sheet.response.kirchhoff_stress[2][2]), 1e-13)
+          << name << F;
+        EXPECT_LT(sheet.plane_stress.n_evaluations, 15u) << name << F;
+      }
+}
+
+
+TEST(PlaneStress, RefusesWhatHasNoStress)
+{
+  for (const auto &[name, law] : all_solids())
+    {
+      Sheet sheet(*law);
+      EXPECT_FALSE(sheet.evaluate(diagonal(-1., 1., 1.))) << name;
+      EXPECT_FALSE(sheet.evaluate(diagonal(0., 1., 1.))) << name;
+    }
+}
+
+
+// A strip is drawn out in five steps: what the points keep of its thickness.
+TEST(PlaneStressMpi, PointsKeepTheirThickness)
+{
+  const Overrides tension = {"Boundary conditions/left/Type=slip",
+                             "Boundary conditions/bottom/Type=slip",
+                             "Boundary conditions/top/Type=normal displacement",
+                             "Boundary conditions/top/Value=0.2*t",
+                             "Time/Time step=0.2",
+                             "Grid/Upper corner=1.25, 1",
+                             "Grid/Cells=5, 4"};
+  const Overrides moving  = {"Boundary conditions/top/Moves the grid=true"};
+  for (const auto &method :
+       {moving,
+        moving + Overrides{"Grid/Method=GIMP"},
+        Overrides{"Grid/Method=Lagrangian", "Grid/Upper corner=1, 1"}})
+    {
+      Model<2> model(block_scene("plane stress"), tension + method);
+      for (unsigned int n = 0; n < 5; ++n)
+        {
+          impm::Vector u;
+          ASSERT_TRUE(model.solve(u).converged);
+          model.commit(u);
+          if (!model.grid.is_lagrangian)
+            {
+              model.grid.move_face(3, 1 + 0.2 * model.time);
+              model.points.sort();
+            }
+        }
+      const double side = std::pow(1.2, -0.3);
+      for (unsigned int p = 0; p < model.points.size(); ++p)
+        {
+          const auto F = model.points.layout.load_tensor(
+            model.points.fields(p) + model.points.offset_deformation);
+          EXPECT_LT((F - diagonal(side, 1.2, side)).norm(), 1e-9);
+        }
+    }
+}

@@ -1,0 +1,304 @@
+#ifndef impm_tests_unit_scene_fixture_h
+#define impm_tests_unit_scene_fixture_h
+
+#include <deal.II/base/conditional_ostream.h>
+#include <deal.II/base/timer.h>
+
+#include <impm/footprints/transfer.h>
+#include <impm/solve/step_solver.h>
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <fstream>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace impm
+{
+  using Overrides = std::vector<std::string>;
+
+  inline Overrides
+  operator+(Overrides first, const Overrides &second)
+  {
+    first.insert(first.end(), second.begin(), second.end());
+    return first;
+  }
+
+  /** A file that goes with its scope; every rank has its own. */
+  class TemporaryFile
+  {
+  public:
+    TemporaryFile(const std::string &text, const std::string &extension)
+    {
+      static unsigned int count = 0;
+      name = "/tmp/impm_test_" + std::to_string(getpid()) + "_" +
+             std::to_string(count++) + extension;
+      std::ofstream(name) << text;
+    }
+
+    ~TemporaryFile()
+    {
+      std::remove(name.c_str());
+    }
+
+    TemporaryFile(const TemporaryFile &) = delete;
+    TemporaryFile &
+    operator=(const TemporaryFile &) = delete;
+
+    std::string name;
+  };
+
+  /** A scene from the text of a parameter file. */
+  template <int dim>
+  Scene<dim>
+  scene_from(const std::string &text, const Overrides &overrides = {})
+  {
+    const TemporaryFile file(text, ".prm");
+    ParameterFile       parameters(file.name, overrides, declare_scene);
+    return read_scene<dim>(parameters.handler());
+  }
+
+  /**
+   * A block that fills the unit cube of 4 cells in each direction, elastic, of
+   * stiffness 1 and density 1, with free faces, for one quasi-static step.
+   */
+  inline std::string
+  block_scene(const std::string &kind)
+  {
+    const bool solid  = kind == "3D";
+    const auto corner = [&](const std::string &value) {
+      return value + ", " + value + (solid ? ", " + value : "") + "\n";
+    };
+    return "subsection Geometry\n"
+           "  set Kind   = " +
+           kind +
+           "\n"
+           "  set Shapes = box\n"
+           "  subsection box\n"
+           "    set Lower corner = " +
+           corner("0") + "    set Upper corner = " + corner("1") +
+           "  end\n"
+           "end\n"
+           "subsection Grid\n"
+           "  set Lower corner = " +
+           corner("0") + "  set Upper corner = " + corner("1") +
+           "  set Cells        = " + corner("4") +
+           "end\n"
+           "subsection Materials\n"
+           "  set Names = rubber\n"
+           "  subsection rubber\n"
+           "    set Law             = log-strain elastic\n"
+           "    set Density         = 1\n"
+           "    set Young's modulus = 1\n"
+           "    set Poisson's ratio = 0.3\n"
+           "  end\n"
+           "end\n"
+           "subsection Bodies\n"
+           "  set Names = block\n"
+           "  subsection block\n"
+           "    set Shape    = box\n"
+           "    set Material = rubber\n"
+           "  end\n"
+           "end\n"
+           "subsection Time\n"
+           "  set Time step = 1\n"
+           "  set End time  = 1\n"
+           "end\n"
+           "subsection Solver\n"
+           "  set Newton tolerance = 1e-13\n"
+           "  set Linear solver    = direct\n"
+           "end\n"
+           "subsection Output\n"
+           "  set Pictures = false\n"
+           "end\n";
+  }
+
+  /** The same block of a fluid that resists shear with viscosity only. */
+  inline std::string
+  fluid_scene(const std::string &kind)
+  {
+    std::string text = block_scene(kind);
+    const auto  from = text.find("    set Law"), to = text.find("  end", from);
+    return text.replace(from,
+                        to - from,
+                        "    set Law              = Newtonian fluid\n"
+                        "    set Density          = 1\n"
+                        "    set Bulk modulus     = 1\n"
+                        "    set Viscosity        = 0.3\n"
+                        "    set Second viscosity = 0.1\n");
+  }
+
+  inline const Overrides plastic = {"Materials/rubber/Law=log-strain von Mises",
+                                    "Materials/rubber/Yield stress=0.02",
+                                    "Materials/rubber/Hardening modulus=0.1"};
+
+  /** The cells on the left are split: hanging nodes inside. */
+  inline const Overrides refined = {"Grid/Local refinements=1",
+                                    "Grid/Refine where=0.55 - x"};
+
+  inline const Overrides with_inertia = {"Time/Integrator=theta",
+                                         "Time/Theta=1"};
+
+  /** The same displacement, a function of x and t, on all faces. */
+  inline Overrides
+  displaced_faces(const unsigned int dim, const std::string &value)
+  {
+    Overrides overrides;
+    for (unsigned int f = 0; f < 2 * dim; ++f)
+      {
+        const std::string face = "Boundary conditions/" + face_names()[f];
+        overrides.push_back(face + "/Type=displacement");
+        overrides.push_back(face + "/Value=" + value);
+      }
+    return overrides;
+  }
+
+  /** All that computes, of one scene. */
+  template <int dim>
+  struct Model
+  {
+    explicit Model(const std::string &text,
+                   const Overrides   &overrides    = {},
+                   const MPI_Comm     communicator = MPI_COMM_WORLD)
+      : scene(scene_from<dim>(text, overrides))
+      , silence(std::cout, false)
+      , timer(silence,
+              dealii::TimerOutput::never,
+              dealii::TimerOutput::wall_times)
+      , grid(scene.grid, communicator)
+      , points(scene, grid)
+      , rigid(scene, grid)
+      , integrator(make_time_integrator(scene.time))
+      , balance(scene, grid, points, rigid, *integrator)
+      , step_solver(scene, balance, *integrator, timer)
+    {}
+
+    Vector
+    vector() const
+    {
+      Vector v;
+      grid.initialize(v);
+      return v;
+    }
+
+    /** Any values up to `size`. */
+    Vector
+    random(const unsigned int seed, const double size) const
+    {
+      Vector v = vector();
+      for (unsigned int i = 0; i < v.locally_owned_size(); ++i)
+        {
+          std::mt19937 generator(1000 * seed +
+                                 v.get_partitioner()->local_to_global(i));
+          v.local_element(i) =
+            std::uniform_real_distribution<double>(-size, size)(generator);
+        }
+      return v;
+    }
+
+    /** An increment that satisfies the constraints of this step. */
+    Vector
+    random_increment(const unsigned int seed, const double size) const
+    {
+      Vector u = random(seed, size);
+      balance.constraints.set_prescribed(u);
+      balance.constraints.interpolate_hanging(u);
+      return u;
+    }
+
+    /** The difference of two such increments. */
+    Vector
+    random_direction(const unsigned int seed) const
+    {
+      Vector s = random(seed, 1.);
+      balance.constraints.set_zero(s);
+      balance.constraints.interpolate_hanging(s);
+      return s;
+    }
+
+    /** u = gradient (x - centre) at all nodes. */
+    Vector
+    linear_field(const dealii::Tensor<2, dim> &gradient,
+                 const dealii::Point<dim>     &centre = {}) const
+    {
+      Vector u = vector();
+      for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
+        u.local_element(i) =
+          (gradient * (grid.node_positions()[i / dim] - centre))[i % dim];
+      u.update_ghost_values();
+      return u;
+    }
+
+    /** Moves every point of this rank; the cells stay the right ones. */
+    template <typename Place>
+    void
+    place_points(const Place &place)
+    {
+      unsigned int p = 0;
+      for (auto &particle : points.sorted.particles)
+        particle.set_location(place(p++, particle));
+      points.sort();
+    }
+
+    /** Each point anywhere in its cell. */
+    void
+    scatter_points(const unsigned int seed)
+    {
+      place_points([&](const unsigned int, const auto &particle) {
+        std::mt19937       generator(seed + particle.get_id());
+        const auto         cell = particle.get_surrounding_cell();
+        dealii::Point<dim> x;
+        for (unsigned int d = 0; d < dim; ++d)
+          x[d] =
+            cell->vertex(0)[d] +
+            cell->extent_in_direction(d) *
+              std::uniform_real_distribution<double>(0.01, 0.99)(generator);
+        return x;
+      });
+    }
+
+    /** Makes an increment that has been evaluated the state at the start. */
+    void
+    commit(const Vector &u)
+    {
+      u.update_ghost_values();
+      Vector velocity = vector(), acceleration = vector();
+      balance.end_motion(u, velocity, acceleration);
+      advance_points(
+        balance, scene.time, dt, u, velocity, acceleration, points);
+      balance.carry_motion(grid, u, velocity, acceleration);
+      points.sort();
+      time += dt;
+    }
+
+    void
+    begin_step()
+    {
+      balance.begin_step(time, dt);
+    }
+
+    /** Solves for one step, as Simulation does, and leaves it there. */
+    typename StepSolver<dim>::Result
+    solve(Vector &u)
+    {
+      begin_step();
+      u = vector();
+      return step_solver.solve(dt, u);
+    }
+
+    const Scene<dim>                scene;
+    dealii::ConditionalOStream      silence;
+    dealii::TimerOutput             timer;
+    BackgroundGrid<dim>             grid;
+    MaterialPoints<dim>             points;
+    RigidBodies<dim>                rigid;
+    std::unique_ptr<TimeIntegrator> integrator;
+    MomentumBalance<dim>            balance;
+    StepSolver<dim>                 step_solver;
+    double                          time = 0, dt = scene.time.step;
+  };
+} // namespace impm
+
+#endif

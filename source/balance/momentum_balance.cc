@@ -1,382 +1,42 @@
 #include <impm/balance/momentum_balance.h>
-#include <impm/balance/terms/face_traction.h>
-#include <impm/balance/terms/isolated_cells.h>
-#include <impm/balance/terms/point_traction.h>
 #include <impm/base/exceptions.h>
-#include <impm/footprints/grid_motion.h>
 
 #include <cmath>
+#include <limits>
 
 namespace impm
 {
   using namespace dealii;
 
   template <int dim>
-  MomentumBalance<dim>::MomentumBalance(const Scene<dim>          &scene,
-                                        const BackgroundGrid<dim> &grid,
-                                        const MaterialPoints<dim> &points,
-                                        const RigidBodies<dim>    &rigid,
-                                        const TimeIntegrator      &integrator)
-    : grid(grid)
-    , constraints(scene, grid, rigid)
-    , response(scene, points)
-    , scene(scene)
-    , points(points)
-    , integrator(integrator)
-    , axisymmetric(scene.geometry == GeometryKind::axisymmetric)
-    , n_gradients(response.kinematics.size)
-    , builder(make_footprint_builder(scene))
-    , smoothing(scene.time.momentum_formulation ?
-                  std::make_unique<VelocitySmoothing<dim>>(
-                    points, prints, constraints, grid) :
-                  nullptr)
+  MomentumBalance<dim>::MomentumBalance(
+    const Discretization<dim>  &discretization,
+    const StepConstraints<dim> &constraints,
+    Parts                       the_parts,
+    WorkCounts                 &work_counts)
+    : discretization(discretization)
+    , constraints(constraints)
+    , parts(std::move(the_parts))
   {
-    for (Vector *vector : {&mass,
-                           &velocity,
-                           &acceleration,
-                           &holding,
-                           &known_acceleration,
-                           &load,
-                           &start_load,
-                           &start_forces,
-                           &start_increment,
-                           &work,
-                           &smooth,
-                           &smooth_direction,
-                           &forces,
-                           &free_residual})
-      grid.initialize(*vector);
-  }
-
-  template <int dim>
-  void
-  MomentumBalance<dim>::begin_step(const double time, const double dt)
-  {
-    this->time = time;
-    this->dt   = dt;
-    builder->build(points, grid, prints);
-    populated.build(prints, points, grid);
-    response.begin_step(dt);
-    prints.make_patches(response.average.groups);
-    gradient_increments.resize(points.size() * n_gradients);
-    stress_increments.resize(points.size() * n_gradients);
-
-    mark_support();
-    smallest_extent = grid.smallest_cell_extent();
-    ghost.build(populated,
-                grid,
-                scene.geometry,
-                scene.stabilization.ghost_penalty);
-    if (!integrator.is_explicit())
-      gather_load(time + dt, load);
-    hold_isolated_cells();
-    if (integrator.has_inertia() && !nodes_have_motion)
-      gather_motion(
-        points, prints, constraints, grid, mass, velocity, acceleration);
-    if (integrator.has_inertia() && grid.is_lagrangian && !nodes_have_motion)
-      {
-        interpolate_initial_velocity(
-          scene, points, prints, constraints, grid, mass, velocity);
-        nodes_have_motion = true;
-      }
-    if (smoothing)
-      {
-        smoothing->begin_step(mass);
-        start_increment.equ(dt, velocity);
-      }
-    if (integrator.force_factor() < 1)
+    counts = &work_counts;
+    for (Vector *vector :
+         {&forces, &free_residual, &forces_at_start, &work, &smooth})
+      initialize(*vector);
+    if (parts.end_weight < 1)
       gather_start_forces();
-    if (integrator.has_inertia())
-      integrator.known_acceleration(dt,
-                                    velocity,
-                                    acceleration,
-                                    known_acceleration);
-  }
-
-  template <int dim>
-  void
-  MomentumBalance<dim>::mark_support()
-  {
-    // Force at a strain of one: the scale of the residual, and the mark of
-    // nodes that have material.
-    work = 0;
-    for (const auto &cell : prints.cells)
-      for (unsigned int e = cell.begin; e < cell.end; ++e)
-        {
-          const unsigned int p = prints.point[e];
-          const double force   = prints.weight[e] * points.initial_volume(p) *
-                               points.material(p).stiffness() / cell.extent;
-          for (const unsigned int node : cell.nodes)
-            for (unsigned int c = 0; c < dim; ++c)
-              work.local_element(dim * node + c) += force;
-        }
-    work.compress(VectorOperation::add);
-    constraints.condense_hanging(work);
-    force_scale =
-      scene.solver.residual_scale == ResidualScale::body ? work.l2_norm() :
-      scene.solver.residual_scale == ResidualScale::cell ? force_of_cell() :
-                                                           1 / dt;
-    work.update_ghost_values();
-    constraints.build(time, dt, work);
-    n_active_dofs = 0;
-    for (unsigned int i = 0; i < work.locally_owned_size(); ++i)
-      n_active_dofs += !constraints.is_constrained[i];
-    n_active_dofs = Utilities::MPI::sum(n_active_dofs, grid.communicator);
-  }
-
-  template <int dim>
-  double
-  MomentumBalance<dim>::force_of_cell() const
-  {
-    double stiffness = 0, volume = std::numeric_limits<double>::max();
-    for (const auto &body : scene.bodies)
-      if (!body.rigid)
-        stiffness = std::max(stiffness, body.material->stiffness());
-    for (const auto &cell : prints.cells)
-      {
-        double product = 1;
-        for (unsigned int d = 0; d < dim; ++d)
-          product *= cell_extent(cell.cell, d);
-        volume = std::min(volume, product);
-      }
-    // The paper's forces around an axis are those of a radian.
-    return (axisymmetric ? 2 * numbers::PI : 1.) * stiffness *
-           Utilities::MPI::min(volume, grid.communicator);
   }
 
   template <int dim>
   void
   MomentumBalance<dim>::gather_start_forces()
   {
-    if (!response.evaluate_start())
+    bool fine = true;
+    for (const auto &term : parts.strain_terms)
+      fine = term->add_start_force(forces_at_start) && fine;
+    if (Utilities::MPI::min(fine ? 1 : 0, discretization.communicator) == 0)
       throw ComputationError("a point has no stress at the start of a step");
-    start_forces = 0;
-    add_point_forces(response.stresses, start_forces);
-    start_forces.compress(VectorOperation::add);
-    constraints.condense_hanging(start_forces);
-    gather_load(time, start_load);
-    start_forces += start_load;
-    if (integrator.keeps_acceleration())
-      return;
-    for (unsigned int i = 0; i < mass.locally_owned_size(); ++i)
-      acceleration.local_element(i) =
-        mass.local_element(i) > 0 && !constraints.is_constrained[i] ?
-          -start_forces.local_element(i) / mass.local_element(i) :
-          0.;
-  }
-
-  template <int dim>
-  void
-  MomentumBalance<dim>::end_motion(const Vector &u,
-                                   Vector       &end_velocity,
-                                   Vector       &end_acceleration) const
-  {
-    if (!integrator.has_inertia())
-      return;
-    integrator.end_motion(
-      dt, u, velocity, acceleration, end_velocity, end_acceleration);
-    for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
-      if (constraints.is_constrained[i])
-        {
-          end_velocity.local_element(i)     = u.local_element(i) / dt;
-          end_acceleration.local_element(i) = 0;
-        }
-    constraints.interpolate_hanging(end_velocity);
-    constraints.interpolate_hanging(end_acceleration);
-  }
-
-  template <int dim>
-  void
-  MomentumBalance<dim>::carry_motion(BackgroundGrid<dim> &moving_grid,
-                                     const Vector        &u,
-                                     const Vector        &end_velocity,
-                                     const Vector        &end_acceleration)
-  {
-    if (!grid.is_lagrangian)
-      return;
-    moving_grid.carry(u);
-    velocity     = end_velocity;
-    acceleration = end_acceleration;
-  }
-
-  template <int dim>
-  void
-  MomentumBalance<dim>::gradients_at_points(
-    const Vector &u, std::vector<double> &gradients) const
-  {
-    std::fill(gradients.begin(), gradients.end(), 0.);
-    for (const auto &cell : prints.cells)
-      {
-        std::array<double, Footprints<dim>::n_nodes * dim> local;
-        for (unsigned int n = 0; n < Footprints<dim>::n_nodes; ++n)
-          for (unsigned int c = 0; c < dim; ++c)
-            local[dim * n + c] = u.local_element(dim * cell.nodes[n] + c);
-        for (unsigned int e = cell.begin; e < cell.end; ++e)
-          {
-            const unsigned int p        = prints.point[e];
-            const double      *slope    = prints.gradient(e);
-            double            *gradient = &gradients[p * n_gradients];
-            for (unsigned int n = 0; n < Footprints<dim>::n_nodes; ++n)
-              for (unsigned int c = 0; c < dim; ++c)
-                for (unsigned int d = 0; d < dim; ++d)
-                  gradient[dim * c + d] +=
-                    local[dim * n + c] * slope[dim * n + d];
-            if (axisymmetric)
-              for (unsigned int n = 0; n < Footprints<dim>::n_nodes; ++n)
-                gradient[dim * dim] += local[dim * n] * prints.value(e)[n] *
-                                       prints.inverse_radius[p];
-          }
-      }
-  }
-
-  template <int dim>
-  void
-  MomentumBalance<dim>::add_point_forces(const std::vector<double> &stress,
-                                         Vector                    &force) const
-  {
-    for (const auto &cell : prints.cells)
-      {
-        std::array<double, Footprints<dim>::n_nodes * dim> local{};
-        for (unsigned int e = cell.begin; e < cell.end; ++e)
-          {
-            const unsigned int p     = prints.point[e];
-            const double      *slope = prints.gradient(e);
-            const double      *P     = &stress[p * n_gradients];
-            for (unsigned int n = 0; n < Footprints<dim>::n_nodes; ++n)
-              for (unsigned int c = 0; c < dim; ++c)
-                for (unsigned int d = 0; d < dim; ++d)
-                  local[dim * n + c] += P[dim * c + d] * slope[dim * n + d];
-            if (axisymmetric)
-              for (unsigned int n = 0; n < Footprints<dim>::n_nodes; ++n)
-                local[dim * n] +=
-                  P[dim * dim] * prints.value(e)[n] * prints.inverse_radius[p];
-          }
-        for (unsigned int n = 0; n < Footprints<dim>::n_nodes; ++n)
-          for (unsigned int c = 0; c < dim; ++c)
-            force.local_element(dim * cell.nodes[n] + c) += local[dim * n + c];
-      }
-  }
-
-  template <int dim>
-  void
-  MomentumBalance<dim>::hold_isolated_cells()
-  {
-    n_held_cells        = 0;
-    holding             = 0;
-    const double factor = scene.stabilization.isolated_stiffness;
-    if (integrator.has_inertia() || factor == 0)
-      return;
-    const auto isolated =
-      find_isolated_cells(populated, grid, constraints, axisymmetric);
-    for (const auto &cell : populated.cells)
-      n_held_cells += isolated[cell.cell->active_cell_index()];
-    for (const auto &cell : prints.cells)
-      if (isolated[cell.cell->active_cell_index()])
-        {
-          double stiffness = 0;
-          for (unsigned int e = cell.begin; e < cell.end; ++e)
-            stiffness += factor * prints.weight[e] *
-                         points.initial_volume(prints.point[e]) *
-                         points.material(prints.point[e]).stiffness() /
-                         (cell.extent * cell.extent);
-          for (const unsigned int node : cell.nodes)
-            for (unsigned int c = 0; c < dim; ++c)
-              holding.local_element(dim * node + c) += stiffness;
-        }
-    holding.compress(VectorOperation::add);
-    constraints.condense_hanging(holding);
-    n_held_cells = Utilities::MPI::sum(n_held_cells, grid.communicator);
-  }
-
-  template <int dim>
-  void
-  MomentumBalance<dim>::gather_load(const double instant, Vector &load)
-  {
-    load = 0;
-    if (scene.body_force)
-      add_body_force(instant, load);
-    add_point_tractions(scene, points, prints, instant, -1., load);
-    if (grid.is_lagrangian)
-      add_face_tractions(scene, grid, instant, -1., load);
-    load.compress(VectorOperation::add);
-    constraints.condense_hanging(load);
-  }
-
-  template <int dim>
-  void
-  MomentumBalance<dim>::add_body_force(const double instant, Vector &load)
-  {
-    scene.body_force->set_time(instant);
-    dealii::Vector<double> value(dim);
-    unsigned int           p = 0;
-    point_forces.resize(points.size());
-    for (const auto &particle : points.sorted.particles)
-      {
-        scene.body_force->vector_value(scene.body_force_is_initial ?
-                                         points.initial_position(p) :
-                                         particle.get_location(),
-                                       value);
-        for (unsigned int c = 0; c < dim; ++c)
-          point_forces[p][c] = -points.mass(p) * value[c];
-        ++p;
-      }
-    prints.spread(point_forces, load);
-  }
-
-  template <int dim>
-  void
-  MomentumBalance<dim>::explicit_increment(Vector &u) const
-  {
-    u.equ(dt, velocity);
-    u.add(dt * dt, acceleration);
-    constraints.set_prescribed(u);
-  }
-
-  template <int dim>
-  void
-  MomentumBalance<dim>::inverse_mass(Vector &inverse) const
-  {
-    for (unsigned int i = 0; i < mass.locally_owned_size(); ++i)
-      inverse.local_element(i) =
-        constraints.is_constrained[i] ? 1. : 1 / mass.local_element(i);
-  }
-
-  template <int dim>
-  double
-  MomentumBalance<dim>::work_along(const Vector &direction,
-                                   const Vector &force) const
-  {
-    if (!smoothing)
-      return force * direction;
-    smoothing->apply_derivative(direction, smooth_direction);
-    return force * smooth_direction;
-  }
-
-  template <int dim>
-  double
-  MomentumBalance<dim>::add_inertia(const Vector &u, double &potential)
-  {
-    // In the momentum formulation, the energy of the points.
-    if (smoothing)
-      {
-        smooth_direction = u;
-        constraints.set_zero(smooth_direction);
-        constraints.interpolate_hanging(smooth_direction);
-        smoothing->apply_derivative(smooth_direction, smooth_direction);
-      }
-    const Vector &direction = smoothing ? smooth_direction : u;
-    double        squares   = 0;
-    for (unsigned int i = 0; i < forces.locally_owned_size(); ++i)
-      if (mass.local_element(i) > 0)
-        {
-          const double m = mass.local_element(i), v = u.local_element(i);
-          const double a = integrator.mass_factor(dt) * v;
-          const double h = known_acceleration.local_element(i);
-          potential += m * (0.5 * a - h) * direction.local_element(i);
-          forces.local_element(i) += m * (a - h);
-          squares += std::pow(m * a, 2) + std::pow(m * h, 2);
-        }
-    return std::sqrt(Utilities::MPI::sum(squares, grid.communicator));
+    forces_at_start.compress(VectorOperation::add);
+    discretization.condense_hanging(forces_at_start);
   }
 
   template <int dim>
@@ -385,63 +45,260 @@ namespace impm
   {
     Evaluation result;
     u.update_ghost_values();
-    if (smoothing)
-      smoothing->apply(u, start_increment, smooth);
-    const Vector &strain_u = smoothing ? smooth : u;
-    gradients_at_points(strain_u, response.gradients);
-    double     potential = 0;
-    const bool fine      = response.evaluate(with_tangent, potential);
-    if (Utilities::MPI::min(static_cast<int>(fine), grid.communicator) == 0)
+    if (parts.smoothing)
+      parts.smoothing->apply(u, parts.start_increment, smooth);
+    const Vector &strain_u = parts.smoothing ? smooth : u;
+    bool          fine     = true;
+    for (const auto &term : parts.strain_terms)
+      fine = term->evaluate(strain_u, with_tangent) && fine;
+    const MPI_Comm communicator = discretization.communicator;
+    if (Utilities::MPI::min(fine ? 1 : 0, communicator) == 0)
       return result;
 
-    const double factor = integrator.force_factor();
-    forces              = 0;
-    if (factor > 0)
+    const double weight    = parts.end_weight;
+    double       potential = 0;
+    forces                 = 0;
+    if (weight > 0)
       {
-        add_point_forces(response.stresses, forces);
-        ghost.add_force(strain_u, 1., forces);
+        for (const auto &term : parts.strain_terms)
+          {
+            term->add_force(strain_u, forces);
+            potential += weight * term->energy(strain_u);
+          }
         forces.compress(VectorOperation::add);
-        constraints.condense_hanging(forces);
-        forces += load;
-        potential += ghost.energy(strain_u);
-        for (unsigned int i = 0; i < forces.locally_owned_size(); ++i)
-          potential += load.local_element(i) * strain_u.local_element(i);
+        discretization.condense_hanging(forces);
       }
-    const double force_norm = forces.l2_norm();
-
-    if (factor < 1)
-      forces.sadd(factor, 1 - factor, start_forces);
-    potential *= factor;
-    if (n_held_cells > 0)
-      for (unsigned int i = 0; i < forces.locally_owned_size(); ++i)
-        {
-          const double force = holding.local_element(i) * u.local_element(i);
-          forces.local_element(i) += force;
-          potential += 0.5 * force * u.local_element(i);
-        }
-    const double inertia_norm =
-      integrator.has_inertia() ? add_inertia(u, potential) : 0.;
-    if (factor < 1)
-      for (unsigned int i = 0; i < forces.locally_owned_size(); ++i)
-        potential += (1 - factor) * start_forces.local_element(i) *
-                     strain_u.local_element(i);
+    double noise = forces.l2_norm();
+    if (weight < 1)
+      {
+        forces.sadd(weight, 1 - weight, forces_at_start);
+        for (unsigned int i = 0; i < forces.locally_owned_size(); ++i)
+          potential += (1 - weight) * forces_at_start.local_element(i) *
+                       strain_u.local_element(i);
+      }
+    for (const auto &term : parts.node_terms)
+      {
+        term->add_force(u, forces);
+        potential += term->energy(u);
+      }
 
     free_residual = forces;
     constraints.set_zero(free_residual);
     result.admissible = true;
-    result.potential  = Utilities::MPI::sum(potential, grid.communicator);
-    result.residual   = free_residual.l2_norm() / force_scale;
+    result.potential  = Utilities::MPI::sum(potential, communicator);
+    result.residual   = free_residual.l2_norm() / parts.unit;
 
     // What cancels in the residual at most leaves this behind.
-    const double squares =
-      Utilities::MPI::sum(response.square_of_stresses(), grid.communicator);
+    for (const Terms *terms : {&parts.strain_terms, &parts.node_terms})
+      for (const auto &term : *terms)
+        noise += std::sqrt(
+          Utilities::MPI::sum(term->square_of_parts(u), communicator));
     result.round_off =
-      16 * std::numeric_limits<double>::epsilon() *
-      (force_norm + inertia_norm + std::sqrt(squares) / smallest_extent) /
-      force_scale;
+      16 * std::numeric_limits<double>::epsilon() * noise / parts.unit;
     if (!std::isfinite(result.residual) || !std::isfinite(result.potential))
       result.admissible = false;
     return result;
+  }
+
+  template <int dim>
+  double
+  MomentumBalance<dim>::work_along(const Vector &direction,
+                                   const Vector &force) const
+  {
+    if (!parts.smoothing)
+      return force * direction;
+    parts.smoothing->apply_derivative(direction, smooth);
+    return force * smooth;
+  }
+
+  template <int dim>
+  void
+  MomentumBalance<dim>::project_tangent()
+  {
+    for (const auto &term : parts.strain_terms)
+      term->project_tangent();
+  }
+
+  template <int dim>
+  void
+  MomentumBalance<dim>::apply_tangent(Vector       &dst,
+                                      const Vector &strain_src,
+                                      const Vector &src) const
+  {
+    ++counts->operator_applications;
+    dst = 0;
+    for (const auto &term : parts.strain_terms)
+      term->apply(strain_src, dst);
+    dst.compress(VectorOperation::add);
+    discretization.condense_hanging(dst);
+    dst *= parts.end_weight;
+    for (const auto &term : parts.node_terms)
+      term->apply(src, dst);
+  }
+
+  template <int dim>
+  void
+  MomentumBalance<dim>::vmult(Vector &dst, const Vector &src) const
+  {
+    work = src;
+    constraints.set_zero(work);
+    interpolate_hanging(work);
+    if (parts.smoothing)
+      parts.smoothing->apply_derivative(work, smooth);
+    apply_tangent(dst, parts.smoothing ? smooth : work, work);
+    for (unsigned int i = 0; i < dst.locally_owned_size(); ++i)
+      if (constraints.is_constrained[i])
+        dst.local_element(i) = src.local_element(i);
+  }
+
+  template <int dim>
+  void
+  MomentumBalance<dim>::vmult_lift(Vector &dst, const Vector &src) const
+  {
+    work = src;
+    interpolate_hanging(work);
+    if (parts.smoothing)
+      parts.smoothing->apply_derivative(work, smooth);
+    apply_tangent(dst, parts.smoothing ? smooth : work, work);
+    constraints.set_zero(dst);
+  }
+
+  template <int dim>
+  void
+  MomentumBalance<dim>::diagonal(Vector &diagonal) const
+  {
+    diagonal = 0;
+    for (const auto &term : parts.strain_terms)
+      term->add_diagonal(diagonal);
+    diagonal.compress(VectorOperation::add);
+    discretization.condense_hanging(diagonal);
+    diagonal *= parts.end_weight;
+    for (const auto &term : parts.node_terms)
+      term->add_diagonal(diagonal);
+    for (unsigned int i = 0; i < diagonal.locally_owned_size(); ++i)
+      if (constraints.is_constrained[i])
+        diagonal.local_element(i) = 1;
+  }
+
+  template <int dim>
+  std::unique_ptr<SparseMatrix>
+  MomentumBalance<dim>::make_matrix() const
+  {
+    auto matrix = std::make_unique<SparseMatrix>(
+      discretization.locally_owned_dofs(),
+      discretization.numbering->locally_relevant_dofs,
+      constraints.constraints,
+      discretization.communicator);
+    for (const auto &term : parts.strain_terms)
+      term->add_matrix(true,
+                       [&](const unsigned int *begin,
+                           const unsigned int *end,
+                           const FullMatrix<double> &) {
+                         matrix->add_to_pattern(
+                           discretization.dofs_of_nodes(begin, end));
+                       });
+    matrix->end_pattern();
+    if (!parts.smoothing)
+      return matrix;
+    // What is asked for is a product.
+    stiffness   = std::move(matrix);
+    spread_mass = parts.smoothing->make_spread_mass();
+    return std::make_unique<SparseMatrix>(
+      discretization.locally_owned_dofs(),
+      discretization.numbering->locally_relevant_dofs,
+      constraints.constraints,
+      discretization.communicator);
+  }
+
+  template <int dim>
+  void
+  MomentumBalance<dim>::assemble_stiffness(SparseMatrix &matrix) const
+  {
+    matrix.set_zero();
+    FullMatrix<double> weighed;
+    for (const auto &term : parts.strain_terms)
+      term->add_matrix(false,
+                       [&](const unsigned int       *begin,
+                           const unsigned int       *end,
+                           const FullMatrix<double> &block) {
+                         const auto dofs =
+                           discretization.dofs_of_nodes(begin, end);
+                         if (parts.end_weight == 1)
+                           {
+                             matrix.add_block(block, dofs);
+                             return;
+                           }
+                         weighed = block;
+                         weighed *= parts.end_weight;
+                         matrix.add_block(weighed, dofs);
+                       });
+    matrix.end_adding();
+
+    // Rows that nothing has touched. A free one, without any stiffness, needs
+    // a place for its inertia: products leave out what is zero.
+    const auto &partitioner = *discretization.numbering->partitioner;
+    double      largest     = 0;
+    for (const auto dof : discretization.locally_owned_dofs())
+      largest = std::max(largest, matrix.diagonal(dof));
+    largest = Utilities::MPI::max(largest, discretization.communicator);
+    for (unsigned int i = 0; i < partitioner.locally_owned_size(); ++i)
+      {
+        const auto dof = partitioner.local_to_global(i);
+        if (matrix.diagonal(dof) != 0)
+          continue;
+        if (constraints.is_constrained[i])
+          matrix.add(dof, dof, largest);
+        else if (parts.smoothing)
+          matrix.add(dof, dof, std::numeric_limits<double>::min());
+      }
+    matrix.end_adding();
+  }
+
+  template <int dim>
+  void
+  MomentumBalance<dim>::assemble(SparseMatrix &matrix) const
+  {
+    assemble_stiffness(parts.smoothing ? *stiffness : matrix);
+    if (parts.smoothing)
+      matrix.multiply(*stiffness, parts.smoothing->scaling(), *spread_mass);
+    if (parts.node_terms.empty())
+      return;
+    work = 0;
+    for (const auto &term : parts.node_terms)
+      term->add_diagonal(work);
+    const auto &partitioner = *discretization.numbering->partitioner;
+    for (unsigned int i = 0; i < work.locally_owned_size(); ++i)
+      if (!constraints.is_constrained[i] && work.local_element(i) > 0)
+        {
+          const auto dof = partitioner.local_to_global(i);
+          matrix.add(dof, dof, work.local_element(i));
+        }
+    matrix.end_adding();
+  }
+
+  template <int dim>
+  std::vector<std::vector<double>>
+  MomentumBalance<dim>::near_null_space() const
+  {
+    const unsigned int n =
+      discretization.numbering->partitioner->locally_owned_size();
+    const unsigned int n_modes =
+      dim + (parts.has_rotations ? dim * (dim - 1) / 2 : 0);
+    std::vector<std::vector<double>> modes(n_modes, std::vector<double>(n));
+    for (unsigned int i = 0; i < n; ++i)
+      {
+        if (constraints.is_constrained[i])
+          continue;
+        const unsigned int c     = i % dim;
+        const auto        &place = discretization.node_positions[i / dim];
+        modes[c][i]              = 1;
+        unsigned int mode        = dim;
+        if (parts.has_rotations)
+          for (unsigned int a = 0; a < dim; ++a)
+            for (unsigned int b = a + 1; b < dim; ++b, ++mode)
+              modes[mode][i] = c == a ? -place[b] : c == b ? place[a] : 0.;
+      }
+    return modes;
   }
 
   template class MomentumBalance<2>;

@@ -10,32 +10,28 @@ namespace impm
   using namespace dealii;
 
   template <int dim>
-  PointResponse<dim>::PointResponse(const Scene<dim>          &scene,
-                                    const MaterialPoints<dim> &points)
-    : kinematics(scene.geometry == GeometryKind::axisymmetric)
-    , average(scene, points, kinematics)
+  PointResponse<dim>::PointResponse(const std::vector<BodySpec<dim>> &bodies,
+                                    const bool                 keeps_stress,
+                                    const MaterialPoints<dim> &points,
+                                    const double               dt,
+                                    unsigned long             &n_evaluations)
+    : kinematics(points.layout.geometry == GeometryKind::axisymmetric)
+    , average(bodies, points, kinematics)
     , points(points)
-    , n_stress(scene.keeps_stress() ? points.layout.n_components(
-                                        PointLayout::Kind::symmetric_tensor) :
-                                      0)
+    , dt(dt)
+    , n_evaluations(n_evaluations)
+    , n_stress(keeps_stress ? points.layout.n_components(
+                                PointLayout::Kind::symmetric_tensor) :
+                              0)
   {
-    if (scene.geometry == GeometryKind::plane_stress)
+    if (points.layout.geometry == GeometryKind::plane_stress)
       plane_stress.emplace();
-  }
-
-  template <int dim>
-  void
-  PointResponse<dim>::begin_step(const double dt)
-  {
-    this->dt             = dt;
     const unsigned int n = points.size(), n_g = kinematics.size;
     gradients.assign(n * n_g, 0.);
     stresses.resize(n * n_g);
-    tangents.resize(n * n_g * n_g);
     histories.resize(n * points.history_size());
     end_stresses.resize(n * n_stress);
     thickening.assign(plane_stress ? n : 0, 1.);
-    average.begin_step();
   }
 
   template <int dim>
@@ -55,7 +51,9 @@ namespace impm
     n_evaluations += plane_stress ? 0 : points.size();
     if (!average.measure(gradients))
       return false;
-    const unsigned int               n_g = kinematics.size;
+    const unsigned int n_g = kinematics.size;
+    if (with_tangent) // explicit steps never ask for it
+      tangents.resize(points.size() * n_g * n_g);
     Material::Deformation            deformation;
     Material::Response               response;
     typename Kinematics<dim>::Matrix spatial;

@@ -1,6 +1,3 @@
-#include <deal.II/lac/full_matrix.h>
-#include <deal.II/lac/trilinos_sparsity_pattern.h>
-
 #include <impm/balance/velocity_smoothing.h>
 
 namespace impm
@@ -12,20 +9,15 @@ namespace impm
     const MaterialPoints<dim>  &points,
     const Footprints<dim>      &footprints,
     const StepConstraints<dim> &constraints,
-    const BackgroundGrid<dim>  &grid)
+    const Discretization<dim>  &discretization,
+    const Vector               &mass)
     : points(points)
     , footprints(footprints)
     , constraints(constraints)
-    , grid(grid)
+    , discretization(discretization)
   {
-    grid.initialize(inverse_mass);
-    grid.initialize(change);
-  }
-
-  template <int dim>
-  void
-  VelocitySmoothing<dim>::begin_step(const Vector &mass)
-  {
+    discretization.initialize(inverse_mass);
+    discretization.initialize(change);
     for (unsigned int i = 0; i < mass.locally_owned_size(); ++i)
       {
         const double m                = mass.local_element(i);
@@ -39,20 +31,20 @@ namespace impm
                                            Vector       &result) const
   {
     change = u;
-    constraints.interpolate_hanging(change);
+    discretization.interpolate_hanging(change);
     footprints.interpolate(change, at_points);
     for (unsigned int p = 0; p < points.size(); ++p)
       at_points[p] *= points.mass(p);
     change = 0;
     footprints.spread(at_points, change);
     change.compress(VectorOperation::add);
-    constraints.condense_hanging(change);
+    discretization.condense_hanging(change);
     for (unsigned int i = 0; i < result.locally_owned_size(); ++i)
       result.local_element(i) =
         constraints.is_constrained[i] ?
           u.local_element(i) :
           inverse_mass.local_element(i) * change.local_element(i);
-    constraints.interpolate_hanging(result);
+    discretization.interpolate_hanging(result);
   }
 
   template <int dim>
@@ -69,15 +61,15 @@ namespace impm
         constraints.is_constrained[i] ?
           u.local_element(i) :
           result.local_element(i) + start.local_element(i);
-    constraints.interpolate_hanging(result);
+    discretization.interpolate_hanging(result);
   }
 
   template <int dim>
-  std::vector<types::global_dof_index>
+  SparseMatrix::Dofs
   VelocitySmoothing<dim>::dofs(const typename Footprints<dim>::Patch &patch,
                                const unsigned int component) const
   {
-    std::vector<types::global_dof_index> result;
+    SparseMatrix::Dofs result;
     for (unsigned int n = patch.begin_nodes; n < patch.end_nodes; ++n)
       result.push_back(inverse_mass.get_partitioner()->local_to_global(
         dim * footprints.patch_nodes[n] + component));
@@ -113,56 +105,50 @@ namespace impm
   }
 
   template <int dim>
-  void
-  VelocitySmoothing<dim>::assemble()
+  Vector
+  VelocitySmoothing<dim>::scaling() const
+  {
+    Vector result = inverse_mass;
+    for (unsigned int i = 0; i < result.locally_owned_size(); ++i)
+      if (constraints.is_constrained[i])
+        result.local_element(i) = 1;
+    return result;
+  }
+
+  template <int dim>
+  std::unique_ptr<SparseMatrix>
+  VelocitySmoothing<dim>::make_spread_mass() const
   {
     // Components do not mix.
-    const IndexSet &owned = grid.dof_handler.locally_owned_dofs();
-    TrilinosWrappers::SparsityPattern sparsity(owned,
-                                               owned,
-                                               grid.locally_relevant_dofs,
-                                               grid.communicator);
+    auto matrix = std::make_unique<SparseMatrix>(
+      discretization.locally_owned_dofs(),
+      discretization.numbering->locally_relevant_dofs,
+      constraints.constraints,
+      discretization.communicator);
     for (const auto &patch : footprints.patches)
       for (unsigned int c = 0; c < dim; ++c)
-        constraints.constraints.add_entries_local_to_global(dofs(patch, c),
-                                                            sparsity);
-    for (const auto dof : owned)
-      sparsity.add(dof, dof);
-    sparsity.compress();
-    spread_mass.reinit(sparsity);
+        matrix->add_to_pattern(dofs(patch, c));
+    matrix->end_pattern();
 
     FullMatrix<double> local;
     for (const auto &patch : footprints.patches)
       {
         consistent_mass(patch, local);
         for (unsigned int c = 0; c < dim; ++c)
-          constraints.constraints.distribute_local_to_global(local,
-                                                             dofs(patch, c),
-                                                             spread_mass);
+          matrix->add_block(local, dofs(patch, c));
       }
-    spread_mass.compress(VectorOperation::add);
+    matrix->end_adding();
 
     // Identity where constrained, whatever condensing has left there.
-    scaling.reinit(owned, grid.communicator);
-    for (unsigned int i = 0; i < inverse_mass.locally_owned_size(); ++i)
-      {
-        const auto dof = inverse_mass.get_partitioner()->local_to_global(i);
-        if (constraints.is_constrained[i])
-          spread_mass.set(dof, dof, 1.);
-        scaling[dof] =
-          constraints.is_constrained[i] ? 1. : inverse_mass.local_element(i);
-      }
-    spread_mass.compress(VectorOperation::insert);
-    scaling.compress(VectorOperation::insert);
-  }
-
-  template <int dim>
-  void
-  VelocitySmoothing<dim>::multiply(
-    const TrilinosWrappers::SparseMatrix &K,
-    TrilinosWrappers::SparseMatrix       &product) const
-  {
-    K.mmult(product, spread_mass, scaling);
+    const auto &partitioner = *discretization.numbering->partitioner;
+    for (unsigned int i = 0; i < partitioner.locally_owned_size(); ++i)
+      if (constraints.is_constrained[i])
+        {
+          const auto dof = partitioner.local_to_global(i);
+          matrix->set(dof, dof, 1.);
+        }
+    matrix->end_setting();
+    return matrix;
   }
 
   template class VelocitySmoothing<2>;

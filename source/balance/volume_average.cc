@@ -7,23 +7,18 @@ namespace impm
   using namespace dealii;
 
   template <int dim>
-  VolumeAverage<dim>::VolumeAverage(const Scene<dim>          &scene,
-                                    const MaterialPoints<dim> &points,
-                                    const Kinematics<dim>     &kinematics)
+  VolumeAverage<dim>::VolumeAverage(const std::vector<BodySpec<dim>> &bodies,
+                                    const MaterialPoints<dim>        &points,
+                                    const Kinematics<dim> &kinematics)
     : points(points)
     , kinematics(kinematics)
   {
-    for (const auto &body : scene.bodies)
+    std::vector<char> body_takes_part;
+    for (const auto &body : bodies)
       {
         body_takes_part.push_back(!body.rigid && body.material->average_volume);
         used = used || body_takes_part.back();
       }
-  }
-
-  template <int dim>
-  void
-  VolumeAverage<dim>::begin_step()
-  {
     if (!used)
       return;
     groups.assign(points.size(), numbers::invalid_unsigned_int);

@@ -9,27 +9,20 @@ namespace impm
   namespace
   {
     template <int dim>
-    using CellIterator = typename BackgroundGrid<dim>::CellIterator;
+    using CellIterator = typename Discretization<dim>::CellIterator;
 
+    /**
+     * A point touches the cell that it lies in: plain MPM, and finite elements,
+     * whose cells may be any quadrilaterals.
+     */
     template <int dim>
-    CellIterator<dim>
-    with_dofs(const typename Triangulation<dim>::cell_iterator &cell,
-              const BackgroundGrid<dim>                        &grid)
-    {
-      return CellIterator<dim>(&grid.triangulation,
-                               cell->level(),
-                               cell->index(),
-                               &grid.dof_handler);
-    }
-
-    /** Plain MPM: a point touches the cell that it lies in. */
-    template <int dim>
-    class Points : public FootprintBuilder<dim>
+    class Places : public FootprintBuilder<dim>
     {
     public:
       void
       build(const MaterialPoints<dim> &points,
             const BackgroundGrid<dim> &grid,
+            const Discretization<dim> &discretization,
             Footprints<dim>           &footprints) override
       {
         pieces.clear();
@@ -39,14 +32,30 @@ namespace impm
           {
             pieces.push_back(
               {p++,
-               with_dofs<dim>(particle.get_surrounding_cell(), grid),
+               discretization.with_dofs(particle.get_surrounding_cell()),
                1.,
                particle.get_reference_location()});
             if (points.layout.geometry == GeometryKind::axisymmetric)
               footprints.inverse_radius.push_back(1 /
                                                   particle.get_location()[0]);
           }
-        footprints.build(pieces, p, grid, &Footprints<dim>::box_shape);
+        if (!grid.is_lagrangian)
+          footprints.build(pieces,
+                           p,
+                           discretization,
+                           &Footprints<dim>::box_shape);
+        else
+          footprints.build(pieces,
+                           p,
+                           discretization,
+                           [&](const auto &piece,
+                               double     *values,
+                               double     *gradients) {
+                             Footprints<dim>::mapped_shape(piece,
+                                                           discretization,
+                                                           values,
+                                                           gradients);
+                           });
       }
 
     private:
@@ -69,6 +78,7 @@ namespace impm
       void
       build(const MaterialPoints<dim> &points,
             const BackgroundGrid<dim> &grid,
+            const Discretization<dim> &discretization,
             Footprints<dim>           &footprints) override;
 
     private:
@@ -80,7 +90,7 @@ namespace impm
 
       const Surroundings &
       surroundings_of(const CellIterator<dim>   &cell,
-                      const BackgroundGrid<dim> &grid);
+                      const Discretization<dim> &discretization);
 
       Tensor<1, dim>
       half_extents(const MaterialPoints<dim> &points, unsigned int p) const;
@@ -97,17 +107,21 @@ namespace impm
       std::vector<std::set<typename Triangulation<dim>::active_cell_iterator>>
                                 vertex_to_cells;
       std::vector<Surroundings> surroundings; ///< by active cell, if needed
+      unsigned int              epoch = 0;    ///< of the cells of these lists
     };
 
     template <int dim>
     const typename Boxes<dim>::Surroundings &
     Boxes<dim>::surroundings_of(const CellIterator<dim>   &cell,
-                                const BackgroundGrid<dim> &grid)
+                                const Discretization<dim> &discretization)
     {
-      if (vertex_to_cells.empty())
+      if (epoch != discretization.epoch)
         {
-          vertex_to_cells = GridTools::vertex_to_cell_map(grid.triangulation);
-          surroundings.resize(grid.triangulation.n_active_cells());
+          epoch = discretization.epoch;
+          vertex_to_cells =
+            GridTools::vertex_to_cell_map(discretization.triangulation());
+          surroundings.assign(discretization.triangulation().n_active_cells(),
+                              Surroundings());
         }
       auto &result = surroundings[cell->active_cell_index()];
       if (result.cells.empty())
@@ -118,7 +132,7 @@ namespace impm
                         vertex_to_cells[cell->vertex_index(v)].end());
           for (const auto &other : near)
             if (!other->is_artificial())
-              result.cells.push_back(with_dofs<dim>(other, grid));
+              result.cells.push_back(discretization.with_dofs(other));
         }
       // A grid that follows a boundary stretches.
       for (unsigned int d = 0; d < dim; ++d)
@@ -191,6 +205,7 @@ namespace impm
     void
     Boxes<dim>::build(const MaterialPoints<dim> &points,
                       const BackgroundGrid<dim> &grid,
+                      const Discretization<dim> &discretization,
                       Footprints<dim>           &footprints)
     {
       pieces.clear();
@@ -203,11 +218,11 @@ namespace impm
       for (const auto &particle : points.sorted.particles)
         {
           const auto surrounding = particle.get_surrounding_cell();
-          const auto cell        = with_dofs<dim>(surrounding, grid);
+          const auto cell        = discretization.with_dofs(surrounding);
           if (p == 0 || surrounding != current)
             {
               current = surrounding;
-              around  = &surroundings_of(cell, grid);
+              around  = &surroundings_of(cell, discretization);
               for (unsigned int d = 0; d < dim; ++d)
                 {
                   start[d] = cell->vertex(0)[d];
@@ -254,63 +269,21 @@ namespace impm
             footprints.inverse_radius.push_back(2 / (lower[0] + upper[0]));
           ++p;
         }
-      footprints.build(pieces, p, grid, &Footprints<dim>::box_shape);
+      footprints.build(pieces, p, discretization, &Footprints<dim>::box_shape);
     }
-    /** Finite elements: Gauss points of cells that go with the material. */
-    template <int dim>
-    class GaussPoints : public FootprintBuilder<dim>
-    {
-    public:
-      void
-      build(const MaterialPoints<dim> &points,
-            const BackgroundGrid<dim> &grid,
-            Footprints<dim>           &footprints) override
-      {
-        pieces.clear();
-        footprints.inverse_radius.clear();
-        unsigned int p = 0;
-        for (const auto &particle : points.sorted.particles)
-          {
-            pieces.push_back(
-              {p++,
-               with_dofs<dim>(particle.get_surrounding_cell(), grid),
-               1.,
-               particle.get_reference_location()});
-            if (points.layout.geometry == GeometryKind::axisymmetric)
-              footprints.inverse_radius.push_back(1 /
-                                                  particle.get_location()[0]);
-          }
-        footprints.build(pieces,
-                         p,
-                         grid,
-                         [&](const typename Footprints<dim>::Piece &piece,
-                             double                                *values,
-                             double                                *gradients) {
-                           Footprints<dim>::mapped_shape(piece,
-                                                         grid,
-                                                         values,
-                                                         gradients);
-                         });
-      }
-
-    private:
-      std::vector<typename Footprints<dim>::Piece> pieces;
-    };
   } // namespace
 
   template <int dim>
   std::unique_ptr<FootprintBuilder<dim>>
-  make_footprint_builder(const Scene<dim> &scene)
+  make_footprint_builder(const GridSpec<dim> &spec)
   {
-    if (scene.grid.method == GridMethod::gimp)
-      return std::make_unique<Boxes<dim>>(scene.grid.boxes_stretch);
-    if (scene.grid.method == GridMethod::lagrangian)
-      return std::make_unique<GaussPoints<dim>>();
-    return std::make_unique<Points<dim>>();
+    if (spec.method == GridMethod::gimp)
+      return std::make_unique<Boxes<dim>>(spec.boxes_stretch);
+    return std::make_unique<Places<dim>>();
   }
 
   template std::unique_ptr<FootprintBuilder<2>>
-  make_footprint_builder(const Scene<2> &);
+  make_footprint_builder(const GridSpec<2> &);
   template std::unique_ptr<FootprintBuilder<3>>
-  make_footprint_builder(const Scene<3> &);
+  make_footprint_builder(const GridSpec<3> &);
 } // namespace impm

@@ -40,13 +40,13 @@ namespace impm
   template <int dim>
   void
   Footprints<dim>::mapped_shape(const Piece               &piece,
-                                const BackgroundGrid<dim> &grid,
+                                const Discretization<dim> &discretization,
                                 double                    *values,
                                 double                    *gradients)
   {
-    const auto                         &positions = grid.node_positions();
-    const auto                          nodes     = grid.nodes_of(piece.cell);
-    Tensor<2, dim>                      jacobian; // d x_i / d xi_j
+    const auto    &positions = discretization.node_positions;
+    const auto     nodes     = discretization.nodes_of(piece.cell);
+    Tensor<2, dim> jacobian; // d x_i / d xi_j
     std::array<Tensor<1, dim>, n_nodes> slopes;
     for (unsigned int v = 0; v < n_nodes; ++v)
       {
@@ -73,7 +73,7 @@ namespace impm
   void
   Footprints<dim>::build(const std::vector<Piece>  &pieces,
                          const unsigned int         n_points,
-                         const BackgroundGrid<dim> &grid,
+                         const Discretization<dim> &discretization,
                          const Shape               &shape)
   {
     this->n_points                = n_points;
@@ -85,7 +85,8 @@ namespace impm
     };
 
     // Cells in the order in which they appear, and how many entries each has.
-    slot_of_cell.resize(grid.triangulation.n_active_cells(), no_slot);
+    slot_of_cell.resize(discretization.triangulation().n_active_cells(),
+                        no_slot);
     cells.clear();
     cell_of_entry.resize(n);
     for (unsigned int i = 0; i < n; ++i)
@@ -98,7 +99,8 @@ namespace impm
             double extent = cell_extent(cell, 0);
             for (unsigned int d = 1; d < dim; ++d)
               extent = std::min(extent, cell_extent(cell, d));
-            cells.push_back({cell, grid.nodes_of(cell), 0, 0, extent});
+            cells.push_back(
+              {cell, discretization.nodes_of(cell), 0, 0, extent});
           }
         ++cells[slot].end;
       }

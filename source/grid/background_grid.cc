@@ -1,6 +1,3 @@
-#include <deal.II/dofs/dof_tools.h>
-
-#include <deal.II/fe/fe_q.h>
 #include <deal.II/fe/mapping_cartesian.h>
 #include <deal.II/fe/mapping_q.h>
 
@@ -50,8 +47,6 @@ namespace impm
     , triangulation(communicator)
     , is_lagrangian(spec.method == GridMethod::lagrangian)
     , mapping(make_mapping<dim>(is_lagrangian))
-    , fe(FE_Q<dim>(1), dim)
-    , dof_handler(triangulation)
     , lower_corner(spec.lower_corner)
     , upper_corner(spec.upper_corner)
   {
@@ -84,85 +79,38 @@ namespace impm
           return moved;
         },
         triangulation);
-    distribute_dofs();
-    initial_positions = is_lagrangian ? positions : initial_positions;
+    const auto forget = [this]() {
+      numbering.reset();
+      current.reset();
+    };
+    // On ranks, too, whose own cells stay as they are.
+    auto &signals = triangulation.signals;
+    for (auto *signal : {&signals.any_change,
+                         &signals.post_distributed_refinement,
+                         &signals.post_distributed_repartition,
+                         &signals.post_distributed_load})
+      connections.emplace_back(signal->connect(forget));
+    if (is_lagrangian)
+      discretization()->initialize(state.displacement);
   }
 
   template <int dim>
-  void
-  BackgroundGrid<dim>::distribute_dofs()
+  std::shared_ptr<const Discretization<dim>>
+  BackgroundGrid<dim>::discretization() const
   {
-    dof_handler.distribute_dofs(fe);
-    DoFTools::extract_locally_relevant_dofs(dof_handler, locally_relevant_dofs);
-    hanging_nodes.clear();
-    hanging_nodes.reinit(locally_relevant_dofs);
-    DoFTools::make_hanging_node_constraints(dof_handler, hanging_nodes);
-    if (Utilities::MPI::n_mpi_processes(communicator) > 1 &&
-        triangulation.has_hanging_nodes())
+    if (!numbering)
       {
-        // A box may touch a ghost cell with a node that hangs on a cell which
-        // this rank does not see.
-        hanging_nodes.make_consistent_in_parallel(
-          dof_handler.locally_owned_dofs(),
-          locally_relevant_dofs,
-          communicator);
-        locally_relevant_dofs = hanging_nodes.get_local_lines();
-        for (const auto &line : hanging_nodes.get_lines())
-          for (const auto &entry : line.entries)
-            locally_relevant_dofs.add_index(entry.first);
-        AffineConstraints<double> known(locally_relevant_dofs);
-        known.merge(hanging_nodes,
-                    AffineConstraints<double>::no_conflicts_allowed,
-                    true);
-        hanging_nodes.copy_from(known);
+        numbering = std::make_shared<NodeNumbering<dim>>(triangulation);
+        ++epoch;
       }
-    hanging_nodes.close();
-    partitioner = std::make_shared<Utilities::MPI::Partitioner>(
-      dof_handler.locally_owned_dofs(), locally_relevant_dofs, communicator);
-    locate_nodes();
-  }
-
-  template <int dim>
-  void
-  BackgroundGrid<dim>::locate_nodes()
-  {
-    smallest_extent = std::numeric_limits<double>::max();
-    for (const auto &cell : triangulation.active_cell_iterators())
-      if (cell->is_locally_owned())
-        for (unsigned int d = 0; d < dim; ++d)
-          smallest_extent = std::min(smallest_extent, cell_extent(cell, d));
-    smallest_extent = Utilities::MPI::min(smallest_extent, communicator);
-
-    // Through a vector, for nodes that belong to no cell of this rank.
-    Vector coordinates;
-    initialize(coordinates);
-    for (const auto &cell : dof_handler.active_cell_iterators())
-      if (!cell->is_artificial())
-        {
-          const auto nodes = nodes_of(cell);
-          for (const unsigned int v : cell->vertex_indices())
-            for (unsigned int d = 0; d < dim; ++d)
-              coordinates.local_element(dim * nodes[v] + d) =
-                cell->vertex(v)[d];
-        }
-    coordinates.zero_out_ghost_values();
-    coordinates.update_ghost_values();
-    positions.resize(
-      (partitioner->locally_owned_size() + partitioner->n_ghost_indices()) /
-      dim);
-    for (unsigned int n = 0; n < positions.size(); ++n)
-      for (unsigned int d = 0; d < dim; ++d)
-        positions[n][d] = coordinates.local_element(dim * n + d);
-  }
-
-  template <int dim>
-  std::array<unsigned int, (1u << dim)>
-  BackgroundGrid<dim>::nodes_of(const CellIterator &cell) const
-  {
-    std::array<unsigned int, (1u << dim)> nodes;
-    for (const unsigned int v : cell->vertex_indices())
-      nodes[v] = local_index(cell->vertex_dof_index(v, 0)) / dim;
-    return nodes;
+    if (!current)
+      current =
+        std::make_shared<Discretization<dim>>(numbering,
+                                              epoch,
+                                              state.displacement.size() > 0 ?
+                                                &state.displacement :
+                                                nullptr);
+    return current;
   }
 
   template <int dim>
@@ -173,6 +121,8 @@ namespace impm
     const double       fixed   = face_position(face ^ 1u);
     const double       before  = face_position(face);
     const double       stretch = (position - fixed) / (before - fixed);
+    // The cells stay, only their corners move.
+    const auto kept = numbering;
     GridTools::transform(
       [&](const Point<dim> &vertex) {
         Point<dim> moved = vertex;
@@ -182,23 +132,20 @@ namespace impm
       },
       triangulation);
     (face % 2 == 0 ? lower_corner : upper_corner)[d] = position;
-    locate_nodes();
+    numbering                                        = kept;
   }
 
   template <int dim>
   void
-  BackgroundGrid<dim>::carry(const Vector &u)
+  BackgroundGrid<dim>::carry(const Vector &increment,
+                             const Vector &end_velocity,
+                             const Vector &end_acceleration)
   {
-    for (unsigned int n = 0; n < positions.size(); ++n)
-      for (unsigned int d = 0; d < dim; ++d)
-        positions[n][d] += u.local_element(dim * n + d);
-  }
-
-  template <int dim>
-  void
-  BackgroundGrid<dim>::initialize(Vector &vector) const
-  {
-    vector.reinit(partitioner);
+    state.displacement += increment;
+    state.displacement.update_ghost_values();
+    state.velocity     = end_velocity;
+    state.acceleration = end_acceleration;
+    current.reset();
   }
 
   template class BackgroundGrid<2>;

@@ -12,8 +12,8 @@ namespace impm
                                 const std::vector<BoundingBox<dim>> &boxes)
     : grid(grid)
     , boxes(boxes)
-    , tolerance(1e-4 * grid.smallest_cell_extent())
-    , box_of_node(grid.node_positions().size(), 0)
+    , tolerance(1e-4 * grid.discretization()->smallest_cell_extent)
+    , box_of_node(grid.discretization()->node_positions.size(), 0)
   {}
 
   template <int dim>
@@ -37,9 +37,10 @@ namespace impm
   void
   NodeContact<dim>::stick(const Shifts &shifts)
   {
+    const auto discretization = grid.discretization();
     for (unsigned int n = 0; n < box_of_node.size(); ++n)
       for (unsigned int b = 0; b < boxes.size() && box_of_node[n] == 0; ++b)
-        if (gap(b, grid.node_positions()[n], shifts[b]) <= tolerance)
+        if (gap(b, discretization->node_positions[n], shifts[b]) <= tolerance)
           box_of_node[n] = b + 1;
   }
 
@@ -50,14 +51,15 @@ namespace impm
                                 const Shifts            &start,
                                 const Shifts            &end) const
   {
-    double part = 1;
+    const auto discretization = grid.discretization();
+    double     part           = 1;
     for (unsigned int n = 0; n < box_of_node.size(); ++n)
       {
         const auto first = constrained.begin() + dim * n;
         if (box_of_node[n] > 0 ||
             std::find(first, first + dim, 0) == first + dim)
           continue;
-        const Point<dim> &from = grid.node_positions()[n];
+        const Point<dim> &from = discretization->node_positions[n];
         Point<dim>        to   = from;
         for (unsigned int d = 0; d < dim; ++d)
           to[d] += u.local_element(dim * n + d);

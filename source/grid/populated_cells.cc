@@ -5,15 +5,16 @@ namespace impm
   using namespace dealii;
 
   template <int dim>
-  void
-  PopulatedCells<dim>::build(const Footprints<dim>     &footprints,
-                             const MaterialPoints<dim> &points,
-                             const BackgroundGrid<dim> &grid)
+  PopulatedCells<dim>::PopulatedCells(const Footprints<dim>     &footprints,
+                                      const MaterialPoints<dim> &points,
+                                      const Discretization<dim> &discretization)
+    : stiffness(discretization.triangulation().n_active_cells(), 0.)
   {
     // A point near the border of a rank touches cells of its neighbour. The
     // largest compliance survives the exchange, and zero means empty.
-    Vector compliance(
-      grid.triangulation.global_active_cell_index_partitioner().lock());
+    Vector      compliance(discretization.triangulation()
+                        .global_active_cell_index_partitioner()
+                        .lock());
     const auto &partitioner = *compliance.get_partitioner();
     const auto  place       = [&](const auto &cell) {
       return partitioner.global_to_local(cell->global_active_cell_index());
@@ -29,9 +30,8 @@ namespace impm
     compliance.compress(VectorOperation::max);
     compliance.update_ghost_values();
 
-    cells.clear();
-    stiffness.assign(grid.triangulation.n_active_cells(), 0.);
-    for (const auto &cell : grid.dof_handler.active_cell_iterators())
+    for (const auto &cell :
+         discretization.dof_handler().active_cell_iterators())
       if (!cell->is_artificial())
         {
           const double value = compliance.local_element(place(cell));
@@ -39,7 +39,7 @@ namespace impm
             continue;
           stiffness[cell->active_cell_index()] = 1 / value;
           if (cell->is_locally_owned())
-            cells.push_back({cell, grid.nodes_of(cell)});
+            cells.push_back({cell, discretization.nodes_of(cell)});
         }
   }
 

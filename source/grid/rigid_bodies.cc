@@ -89,6 +89,22 @@ namespace impm
       body.points->sort();
   }
 
+  template <int dim>
+  void
+  RigidBodies<dim>::prepare_for_adaptation()
+  {
+    for (auto &body : bodies)
+      body.points->particles.prepare_for_coarsening_and_refinement();
+  }
+
+  template <int dim>
+  void
+  RigidBodies<dim>::unpack_after_adaptation()
+  {
+    for (auto &body : bodies)
+      body.points->particles.unpack_after_coarsening_and_refinement();
+  }
+
   template class RigidBodies<2>;
   template class RigidBodies<3>;
 } // namespace impm

@@ -109,19 +109,19 @@ namespace impm
   }
 
   template <int dim>
-  History<dim>::History(const Scene<dim>           &scene,
-                        const MaterialPoints<dim>  &points,
-                        const RigidBodies<dim>     &rigid,
-                        const MomentumBalance<dim> &balance)
+  History<dim>::History(const Scene<dim>          &scene,
+                        const MaterialPoints<dim> &points,
+                        const RigidBodies<dim>    &rigid,
+                        const BackgroundGrid<dim> &grid)
     : scene(scene)
     , points(points)
     , rigid(rigid)
-    , balance(balance)
+    , grid(grid)
     , reactions(scene.output.reactions.size())
     , columns(history_columns(scene))
   {
     for (unsigned int f = 0; f < 2 * dim; ++f)
-      face_start[f] = balance.grid.face_position(f);
+      face_start[f] = grid.face_position(f);
     for (const auto &probe : scene.output.probes)
       {
         Follower follower;
@@ -194,7 +194,7 @@ namespace impm
 
   template <int dim>
   void
-  History<dim>::take_reactions()
+  History<dim>::take_reactions(const StepProblem<dim> &problem)
   {
     for (unsigned int r = 0; r < reactions.size(); ++r)
       {
@@ -204,10 +204,11 @@ namespace impm
           norm += d * d;
         // What the carrier exerts balances the material: the force on it is
         // the opposite.
-        reactions[r] = -spec.factor / std::sqrt(norm) *
-                       balance.constraints.sum_over(spec.on,
-                                                    balance.constraint_forces(),
-                                                    spec.direction);
+        reactions[r] =
+          -spec.factor / std::sqrt(norm) *
+          problem.constraints.sum_over(spec.on,
+                                       problem.balance.constraint_forces(),
+                                       spec.direction);
       }
   }
 
@@ -224,9 +225,8 @@ namespace impm
       {
         for (unsigned int f = 0; f < 2 * dim; ++f)
           if (scene.faces[f].name == spec.of)
-            return component == f / 2 ?
-                     balance.grid.face_position(f) - face_start[f] :
-                     0.;
+            return component == f / 2 ? grid.face_position(f) - face_start[f] :
+                                        0.;
         for (unsigned int b = 0; b < rigid.size(); ++b)
           if (rigid.spec(b).name == spec.of)
             return rigid.displacement(b, 0, time)[component];
@@ -300,9 +300,6 @@ namespace impm
   {
     const auto totals   = total(points);
     const auto n_points = points.sorted.n_global();
-    const auto active_cells =
-      Utilities::MPI::sum<unsigned int>(balance.populated.cells.size(),
-                                        points.communicator);
     figures.clear();
     for (unsigned int i = 0; i < scene.output.probes.size(); ++i)
       figures.emplace_back(scene.output.probes[i].name,
@@ -323,8 +320,8 @@ namespace impm
     add(report.line_searches);
     add(report.step_cuts);
     add(n_points);
-    add(active_cells);
-    add(balance.n_active_dofs);
+    add(report.active_cells);
+    add(report.dofs);
     add(totals.mass);
     for (unsigned int d = 0; d < dim; ++d)
       add(totals.momentum[d]);

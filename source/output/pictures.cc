@@ -145,13 +145,13 @@ namespace impm
   }
 
   template <int dim>
-  Pictures<dim>::Pictures(const OutputSpec           &spec,
-                          const MaterialPoints<dim>  &points,
-                          const RigidBodies<dim>     &rigid,
-                          const MomentumBalance<dim> &balance)
+  Pictures<dim>::Pictures(const OutputSpec          &spec,
+                          const MaterialPoints<dim> &points,
+                          const RigidBodies<dim>    &rigid,
+                          const BackgroundGrid<dim> &grid)
     : points(points)
     , rigid(rigid)
-    , balance(balance)
+    , grid(grid)
   {
     check_fields(spec);
     for (const auto &name : spec.point_fields)
@@ -165,8 +165,9 @@ namespace impm
                        const double       time,
                        const Vector      *u)
   {
-    const std::string number = Utilities::int_to_string(n_written++, 5);
-    const auto        comm   = balance.grid.communicator;
+    const std::string number         = Utilities::int_to_string(n_written++, 5);
+    const auto        comm           = grid.communicator;
+    const auto        discretization = grid.discretization();
 
     PointPatches writer;
     for (const auto &field : fields)
@@ -213,7 +214,7 @@ namespace impm
 
     DataOut<dim> grid_writer;
     grid_writer.set_flags(flags);
-    grid_writer.attach_dof_handler(balance.grid.dof_handler);
+    grid_writer.attach_dof_handler(discretization->dof_handler());
     const std::vector<DataComponentInterpretation::DataComponentInterpretation>
       vector(dim, DataComponentInterpretation::component_is_part_of_vector);
     Vector displacement;
@@ -222,14 +223,14 @@ namespace impm
         displacement = *u;
         displacement.update_ghost_values();
         grid_writer.add_data_vector(
-          balance.grid.dof_handler,
+          discretization->dof_handler(),
           displacement,
           std::vector<std::string>(dim, "displacement_increment"),
           vector);
       }
-    dealii::Vector<float> level(balance.grid.triangulation.n_active_cells()),
+    dealii::Vector<float> level(grid.triangulation.n_active_cells()),
       owner(level.size()), n_points(level.size());
-    for (const auto &cell : balance.grid.triangulation.active_cell_iterators())
+    for (const auto &cell : grid.triangulation.active_cell_iterators())
       if (cell->is_locally_owned())
         {
           level[cell->active_cell_index()] = cell->level();
@@ -240,24 +241,18 @@ namespace impm
     grid_writer.add_data_vector(level, "level");
     grid_writer.add_data_vector(owner, "rank");
     grid_writer.add_data_vector(n_points, "points");
-    if (!balance.grid.is_lagrangian)
-      grid_writer.build_patches(*balance.grid.mapping);
+    if (!grid.is_lagrangian)
+      grid_writer.build_patches(*grid.mapping);
     else
       {
-        Vector total;
-        balance.grid.initialize(total);
-        for (unsigned int n = 0; n < balance.grid.node_positions().size(); ++n)
-          for (unsigned int d = 0; d < dim; ++d)
-            total.local_element(dim * n + d) =
-              balance.grid.node_positions()[n][d] -
-              balance.grid.initial_node_positions()[n][d];
-        grid_writer.add_data_vector(balance.grid.dof_handler,
+        const Vector &total = grid.nodal_state().displacement;
+        grid_writer.add_data_vector(discretization->dof_handler(),
                                     total,
                                     std::vector<std::string>(dim,
                                                              "displacement"),
                                     vector);
         grid_writer.build_patches(
-          MappingQ1Eulerian<dim, Vector>(balance.grid.dof_handler, total));
+          MappingQ1Eulerian<dim, Vector>(discretization->dof_handler(), total));
       }
     grid_files.emplace_back(
       time, write_vtu(grid_writer, directory, "grid_" + number, comm));

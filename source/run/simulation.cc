@@ -2,9 +2,10 @@
 
 #include <impm/balance/terms/point_traction.h>
 #include <impm/base/exceptions.h>
-#include <impm/footprints/transfer.h>
+#include <impm/footprints/scatter.h>
 #include <impm/output/summary.h>
 #include <impm/run/checkpoint.h>
+#include <impm/run/motion_limits.h>
 #include <impm/run/simulation.h>
 
 #include <filesystem>
@@ -15,29 +16,27 @@ namespace impm
   using namespace dealii;
 
   template <int dim>
-  Simulation<dim>::Simulation(const Scene<dim>            &scene,
-                              const CommandLine::Verbosity verbosity,
-                              const MPI_Comm               communicator)
-    : scene(scene)
+  Simulation<dim>::Simulation(const Scene<dim>                &the_scene,
+                              const CommandLine::Verbosity     verbosity,
+                              const MPI_Comm                   communicator,
+                              std::unique_ptr<GridPolicy<dim>> other_policy)
+    : scene(the_scene)
     , communicator(communicator)
     , silence(std::cout, false)
     , timer(silence, TimerOutput::never, TimerOutput::wall_times)
     , grid(scene.grid, communicator)
     , points(scene, grid)
     , rigid(scene, grid)
+    , policy(other_policy ? std::move(other_policy) :
+                            make_grid_policy(scene.grid, scene.faces))
+    , control(scene.time)
     , integrator(make_time_integrator(scene.time))
-    , balance(scene, grid, points, rigid, *integrator)
-    , step_solver(scene, balance, *integrator, timer)
-    , pictures(scene.output, points, rigid, balance)
-    , history(scene, points, rigid, balance)
+    , builder(make_footprint_builder(scene.grid))
+    , pictures(scene.output, points, rigid, grid)
+    , history(scene, points, rigid, grid)
     , reference(scene, points, history)
     , console(verbosity, Utilities::MPI::this_mpi_process(communicator) == 0)
-    , step_size(scene.time.step)
-  {
-    grid.initialize(u);
-    grid.initialize(end_velocity);
-    grid.initialize(end_acceleration);
-  }
+  {}
 
   template <int dim>
   void
@@ -46,7 +45,8 @@ namespace impm
     std::ostringstream text;
     text << (scene.title.empty() ? "scene" : scene.title) << '\n'
          << "  grid: " << grid.triangulation.n_global_active_cells()
-         << " cells, " << grid.dof_handler.n_dofs() << " unknowns\n"
+         << " cells, " << grid.discretization()->dof_handler().n_dofs()
+         << " unknowns\n"
          << "  points: " << points.sorted.n_global() << '\n';
     const auto counts = count_points_under_tractions(scene, points);
     for (unsigned int t = 0; t < counts.size(); ++t)
@@ -61,84 +61,63 @@ namespace impm
 
   template <int dim>
   double
-  Simulation<dim>::grid_motion(const unsigned int face) const
+  Simulation<dim>::cfl_unit() const
   {
-    return balance.constraints.face_motion(face, time, time + report.dt);
-  }
-
-  template <int dim>
-  std::string
-  Simulation<dim>::forbidden_motion() const
-  {
-    if (grid.is_lagrangian)
-      return "";
-    // Material that has not reached a face yet does not feel it: a long step
-    // could carry it through.
-    std::array<double, 2 * dim> faces;
-    for (unsigned int f = 0; f < 2 * dim; ++f)
-      faces[f] = grid.face_position(f) +
-                 (scene.faces[f].moves_grid ? grid_motion(f) : 0.);
-    const auto outside = find_point_outside<dim>(balance, u, points, faces);
-    if (!outside.empty())
-      return outside;
-    // Nor does it feel material that it has not reached; and between ranks a
-    // point is found only where the neighbour can see it.
-    const auto motion = [&](const Point<dim> &x) {
-      Tensor<1, dim> displacement;
-      for (unsigned int f = 0; f < 2 * dim; ++f)
-        if (scene.faces[f].moves_grid)
-          {
-            const unsigned int d     = f / 2;
-            const double       fixed = grid.face_position(f ^ 1u);
-            displacement[d] =
-              grid_motion(f) * (x[d] - fixed) / (grid.face_position(f) - fixed);
-          }
-      return displacement;
-    };
-    return largest_motion<dim>(balance, u, points, motion) > 0.95 ?
-             "a point moves across a whole cell" :
-             "";
+    return grid.discretization()->smallest_cell_extent / largest_speed(points);
   }
 
   template <int dim>
   double
   Simulation<dim>::step_unit() const
   {
-    if (scene.time.cfl_number == 0)
-      return 1;
-    return balance.grid.smallest_cell_extent() / largest_speed(points);
+    return scene.time.cfl_number == 0 ? 1. : cfl_unit();
   }
 
   template <int dim>
-  typename StepSolver<dim>::Result
+  void
+  Simulation<dim>::adapt()
+  {
+    if (!policy->flag_cells(grid, points, time))
+      return;
+    TimerOutput::Scope scope(timer, "adapt the grid");
+    problem.reset();
+    adapt_grid(grid, points, rigid);
+  }
+
+  template <int dim>
+  NewtonSolver::Result
   Simulation<dim>::attempt(const double dt)
   {
     report.dt = dt;
     {
       TimerOutput::Scope scope(timer, "set-up of the step");
-      balance.begin_step(time, dt);
+      problem.reset();
+      problem = std::make_unique<StepProblem<dim>>(
+        scene, grid, points, rigid, *integrator, *builder, counts, time, dt);
     }
-    auto result = step_solver.solve(dt, u);
-    report.newton_iterations += result.iterations;
-    report.linear_iterations += result.linear_iterations;
-    report.line_searches += result.line_searches;
-    report.projections += result.projections;
-    report.noise_stops = result.stopped_at_noise;
-    report.residual    = result.residuals.empty() ? 0 : result.residuals.back();
+    auto solution = solve_step(*problem, scene.solver, timer, result.increment);
+    report.newton_iterations += solution.iterations;
+    report.linear_iterations += solution.linear_iterations;
+    report.line_searches += solution.line_searches;
+    report.projections += solution.projections;
+    report.noise_stops = solution.stopped_at_noise;
+    report.residual =
+      solution.residuals.empty() ? 0 : solution.residuals.back();
     std::ostringstream iterations;
-    for (unsigned int i = 0; i < result.residuals.size(); ++i)
-      iterations << ' ' << result.residuals[i]
-                 << (i < result.step_lengths.size() &&
-                         result.step_lengths[i] < 1 ?
-                       " /" + std::to_string(1 / result.step_lengths[i]) :
+    for (unsigned int i = 0; i < solution.residuals.size(); ++i)
+      iterations << ' ' << solution.residuals[i]
+                 << (i < solution.step_lengths.size() &&
+                         solution.step_lengths[i] < 1 ?
+                       " /" + std::to_string(1 / solution.step_lengths[i]) :
                        "");
     console.detail("  residuals:" + iterations.str());
-    if (result.converged)
+    if (solution.converged)
       {
-        result.failure   = forbidden_motion();
-        result.converged = result.failure.empty();
+        solution.failure =
+          forbidden_motion(*problem, result.increment, grid, points, *policy);
+        solution.converged = solution.failure.empty();
       }
-    return result;
+    return solution;
   }
 
   template <int dim>
@@ -150,64 +129,49 @@ namespace impm
     report               = StepReport();
     report.step          = step;
     report.external_work = work;
-    const auto before    = step_solver.linear_solver.n_fallbacks;
-    // The last step ends on time, and none is a sliver.
-    const double left = scene.time.end - time;
-    const double unit = step_unit();
-    double       dt   = step_size * unit;
-    if (left < 1.001 * dt)
-      dt = left;
-    else if (left < 1.999 * dt)
-      dt = left / 2;
-    bool failed = false;
-    for (;;)
+    const auto fallbacks = counts.solver_fallbacks;
+    adapt();
+    for (double dt = control.begin(time, step_unit());;)
       {
-        const auto result = attempt(dt);
+        const auto solution = attempt(dt);
         // Nodes must not pass into a rigid body: the first one lands on it.
         const double part =
-          result.converged ?
-            rigid.first_touch(u,
-                              balance.constraints.is_constrained,
+          solution.converged ?
+            rigid.first_touch(result.increment,
+                              problem->constraints.is_constrained,
                               time,
                               time + dt) :
             0.5;
-        if (result.converged && part == 1)
+        if (solution.converged && part == 1)
           break;
         ++report.step_cuts;
-        console.detail(
-          "  step cut at t = " + std::to_string(time) +
-          ", dt = " + std::to_string(dt) + ": " +
-          (result.converged ? "a node reaches a rigid body" : result.failure));
-        dt *= part;
-        if (result.converged)
-          continue;
-        failed    = true;
-        step_size = dt / unit;
-        if (dt < scene.time.smallest_step * scene.time.step * unit)
+        console.detail("  step cut at t = " + std::to_string(time) +
+                       ", dt = " + std::to_string(dt) + ": " +
+                       (solution.converged ? "a node reaches a rigid body" :
+                                             solution.failure));
+        dt = control.cut(part, !solution.converged);
+        if (!solution.converged && control.is_too_short())
           {
             std::ostringstream where;
             where << "at t = " << time << " s, step " << report.step << ": "
-                  << result.failure << ", and dt = " << dt
+                  << solution.failure << ", and dt = " << dt
                   << " s is below the smallest time step";
             throw ComputationError(where.str());
           }
       }
-    report.solver_fallbacks = step_solver.linear_solver.n_fallbacks - before;
-    report.held_cells       = balance.n_held_cells;
-    report.limited_boxes =
-      Utilities::MPI::sum(balance.n_limited_boxes(), communicator);
+    report.solver_fallbacks = counts.solver_fallbacks - fallbacks;
+    report.held_cells       = problem->n_held_cells;
+    report.limited_boxes    = problem->n_limited_boxes;
+    report.active_cells =
+      Utilities::MPI::sum<unsigned int>(problem->populated.cells.size(),
+                                        communicator);
+    report.dofs = problem->n_active_dofs;
     report.external_work += external_work_of_step();
-    history.take_reactions();
+    history.take_reactions(*problem);
     commit();
+    control.accept();
     report.time         = time;
     report.wall_seconds = wall.wall_time();
-
-    // Grow; after a failure, back to the nominal step first.
-    if (!failed && step_size < scene.time.step)
-      step_size = std::min(1.5 * step_size, scene.time.step);
-    else if (!failed)
-      step_size =
-        std::min(step_size * scene.time.growth, scene.time.largest_step);
 
     sums.newton += report.newton_iterations;
     sums.linear += report.linear_iterations;
@@ -221,13 +185,14 @@ namespace impm
   double
   Simulation<dim>::external_work_of_step() const
   {
-    const auto &forces = balance.constraint_forces();
-    double      work   = 0;
+    const auto   &forces = problem->balance.constraint_forces();
+    const Vector &u      = result.increment;
+    double        work   = 0;
     for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
       {
-        if (balance.constraints.is_constrained[i])
+        if (problem->constraints.is_constrained[i])
           work += forces.local_element(i) * u.local_element(i);
-        work -= balance.load_at(i) * u.local_element(i);
+        work -= problem->load_at(i) * u.local_element(i);
       }
     return Utilities::MPI::sum(work, communicator);
   }
@@ -237,28 +202,13 @@ namespace impm
   Simulation<dim>::commit()
   {
     TimerOutput::Scope scope(timer, "move points and grid");
-    balance.end_motion(u, end_velocity, end_acceleration);
-    advance_points(balance,
-                   scene.time,
-                   report.dt,
-                   u,
-                   end_velocity,
-                   end_acceleration,
-                   points);
-    balance.carry_motion(grid, u, end_velocity, end_acceleration);
-    bool grid_moves = false;
-    for (unsigned int f = 0; f < 2 * dim; ++f)
-      if (scene.faces[f].moves_grid)
-        {
-          grid.move_face(f, grid.face_position(f) + grid_motion(f));
-          grid_moves = true;
-        }
+    const double       end = time + report.dt;
+    result                 = problem->end_motion(result.increment);
+    advance_points(*problem, result, scene.time, points);
+    policy->advance(grid, result, time, end);
     points.sort();
-    if (rigid.size() > 0)
-      rigid.move(time, time + report.dt);
-    else if (grid_moves)
-      rigid.sort();
-    time += report.dt;
+    rigid.move(time, end);
+    time = end;
   }
 
   template <int dim>
@@ -266,7 +216,9 @@ namespace impm
   Simulation<dim>::picture(const bool grid_has_increment)
   {
     TimerOutput::Scope scope(timer, "output");
-    pictures.write(directory, time, grid_has_increment ? &u : nullptr);
+    pictures.write(directory,
+                   time,
+                   grid_has_increment ? &result.increment : nullptr);
   }
 
   template <int dim>
@@ -276,7 +228,7 @@ namespace impm
     console.finish();
     picture(false);
     write_checkpoint(directory,
-                     {report.step - 1, time, step_size, reason},
+                     {report.step - 1, time, control.step_size(), reason},
                      grid,
                      points);
   }
@@ -295,19 +247,19 @@ namespace impm
     summary.bytes_per_point = points.bytes_per_point();
     summary.steps           = report.step;
     summary.time            = time;
-    summary.counts          = {
-               {"newton_iterations", sums.newton},
-               {"linear_iterations", sums.linear},
-               {"line_searches", sums.line_searches},
-               {"step_cuts", sums.cuts},
-               {"tangents", step_solver.linear_solver.n_tangents},
-               {"tangent_projections", sums.projections},
-               {"solver_fallbacks", step_solver.linear_solver.n_fallbacks},
-               {"noise_stops", sums.noise_stops},
-               {"stress_evaluations",
-                Utilities::MPI::sum(balance.response.n_evaluations, communicator)},
-               {"operator_applications", balance.n_operator_applications}};
-    summary.figures      = history.last_figures();
+    summary.counts          = {{"newton_iterations", sums.newton},
+                               {"linear_iterations", sums.linear},
+                               {"line_searches", sums.line_searches},
+                               {"step_cuts", sums.cuts},
+                               {"tangents", counts.tangents},
+                               {"tangent_projections", sums.projections},
+                               {"solver_fallbacks", counts.solver_fallbacks},
+                               {"noise_stops", sums.noise_stops},
+                               {"stress_evaluations",
+                                Utilities::MPI::sum(counts.stress_evaluations,
+                                           communicator)},
+                               {"operator_applications", counts.operator_applications}};
+    summary.figures         = history.last_figures();
     summary.phases       = timer.get_summary_data(TimerOutput::total_wall_time);
     summary.wall_seconds = wall.wall_time();
     if (status == "done")
@@ -327,8 +279,7 @@ namespace impm
     if (!integrator->has_inertia() || scene.time.theta >= 0.5)
       return;
     // Of the highest mode of a grid of full cells, eq. 2.4.1.
-    const double unit =
-      balance.grid.smallest_cell_extent() / largest_speed(points);
+    const double unit  = cfl_unit();
     const double limit = unit / std::sqrt(1 - 2 * scene.time.theta);
     const double dt =
       scene.time.largest_step * (scene.time.cfl_number > 0 ? unit : 1.);
@@ -377,7 +328,6 @@ namespace impm
     MPI_Barrier(communicator);
     wall.restart();
     history.open(directory);
-    balance.begin_step(0, step_size * step_unit());
     warn_of_instability();
     if (scene.output.pictures)
       picture(false);

@@ -82,7 +82,7 @@ namespace impm
     {
       const auto    quadrature = gauss_points<dim>(body.points_per_cell);
       FEValues<dim> values(*grid.mapping,
-                           grid.fe,
+                           grid.discretization()->numbering->fe,
                            quadrature,
                            update_quadrature_points | update_JxW_values);
       std::string   cut;

@@ -1,122 +1,142 @@
 #ifndef impm_balance_momentum_balance_h
 #define impm_balance_momentum_balance_h
 
-#include <deal.II/lac/full_matrix.h>
-#include <deal.II/lac/trilinos_sparse_matrix.h>
-
-#include <impm/balance/point_response.h>
-#include <impm/balance/terms/ghost_penalty.h>
+#include <impm/balance/terms/term.h>
 #include <impm/balance/velocity_smoothing.h>
-#include <impm/footprints/footprint_builder.h>
-#include <impm/grid/step_constraints.h>
-#include <impm/time/time_integrator.h>
+#include <impm/solve/nonlinear_system.h>
 
 #include <memory>
+#include <vector>
 
 namespace impm
 {
   /**
-   * The balance of momentum on the grid over one step: residual, potential,
-   * exact tangent as an operator, its diagonal and its matrix.
+   * The balance of momentum on the grid over one step: a sum of terms,
+   * condensed to the nodes that are free. Unknown is the grid's displacement
+   * increment u:
    *
-   * Unknown is the grid's displacement increment u. At a point,
-   * dF = I + sum_I u_I (x) grad N_I, F = dF F_n, and the internal force is
-   * f_I = sum_p V0_p P_p grad N_I with P = tau dF^-T, gradients at t_n. The
-   * tangent at a point is A = dP/d(dF), that is the spatial tangent of the
-   * Newmark note carried back by dF^-1; see PointResponse.
+   *   w f(u) + (1 - w) f(0) + n(u) = 0,
+   *
+   * with the terms f that strain has to do with (points, ghost penalty, loads),
+   * weighed by the integrator, and those n of the nodes alone, whose derivative
+   * is a diagonal (inertia, holding). In the momentum formulation f feels an
+   * increment that is smoothed.
    */
   template <int dim>
-  class MomentumBalance
+  class MomentumBalance : public NonlinearSystem
   {
   public:
-    MomentumBalance(const Scene<dim>          &scene,
-                    const BackgroundGrid<dim> &grid,
-                    const MaterialPoints<dim> &points,
-                    const RigidBodies<dim>    &rigid,
-                    const TimeIntegrator      &integrator);
+    using Terms = std::vector<std::unique_ptr<Term>>;
 
-    /**
-     * Takes points and grid as they are now for the step from `time` to
-     * `time + dt`. Collective.
-     */
-    void
-    begin_step(double time, double dt);
-
-    /** The state of the points and forces at an increment. */
-    struct Evaluation
+    struct Parts
     {
-      bool   admissible = false; ///< J > 0 and a finite stress everywhere
-      double potential  = 0;     ///< (J)
-      double residual   = 0;     ///< scaled, see begin_step
-      double round_off  = 0;     ///< below this `residual` is noise
+      Terms  strain_terms, node_terms;
+      double end_weight; ///< w
+      /** Norm of the forces that residuals are measured in (N). */
+      double unit;
+      bool   has_potential;
+      bool   has_rotations; ///< whether a rotation of the body is free
+      /** Of the momentum formulation, or null; and dt v (m), the mass (kg). */
+      const VelocitySmoothing<dim> *smoothing = nullptr;
+      Vector                        start_increment;
+      const Vector                 *mass = nullptr;
     };
 
-    /**
-     * The increment of an explicit step, which the forces at its start give:
-     * what is prescribed included. Collective.
-     */
-    void
-    explicit_increment(Vector &u) const;
+    /** Throws ComputationError when a point has no stress at the start.
+     * Collective. */
+    MomentumBalance(const Discretization<dim>  &discretization,
+                    const StepConstraints<dim> &constraints,
+                    Parts                       parts,
+                    WorkCounts                 &counts);
 
-    /**
-     * Evaluates forces and, unless told not to, the tangent at `u`, which
-     * satisfies the constraints. Collective.
-     */
     Evaluation
-    evaluate(const Vector &u, bool with_tangent = true);
+    evaluate(const Vector &u, bool with_tangent = true) override;
 
-    /**
-     * Replaces the tangent at every point by its positive part, so that the
-     * next Newton step descends. Needs a symmetric tangent.
-     */
-    void
-    project_tangent()
-    {
-      response.project_tangent();
-    }
-
-    /**
-     * Velocity (m/s) and, if the integrator keeps it, acceleration (m/s^2) of
-     * the grid after a step that has converged at `u`. What is prescribed has
-     * the mean velocity of its step. Ghosts and hanging nodes are up to date.
-     * Collective.
-     */
-    void
-    end_motion(const Vector &u, Vector &velocity, Vector &acceleration) const;
-
-    /**
-     * Where the nodes keep their motion, takes it over from one step to the
-     * next; elsewhere the points bring it. Moves a Lagrangian grid by `u`.
-     */
-    void
-    carry_motion(BackgroundGrid<dim> &grid,
-                 const Vector        &u,
-                 const Vector        &end_velocity,
-                 const Vector        &end_acceleration);
-
-    /**
-     * The balance of forces (N), zero where constrained. Its work_along() a
-     * direction is the derivative of the potential.
-     */
     const Vector &
-    residual() const
+    residual() const override
     {
       return free_residual;
     }
 
-    /**
-     * What the potential gains of a force (N) along a direction that is zero
-     * where prescribed, hanging nodes included (J). In the momentum formulation
-     * points feel the direction smoothed. Collective.
-     */
     double
-    work_along(const Vector &direction, const Vector &force) const;
-
-    /** Norm of the forces at a strain of one (N), the unit of residuals. */
-    double
-    unit_of_residual() const
+    unit_of_residual() const override
     {
-      return force_scale;
+      return parts.unit;
+    }
+
+    bool
+    has_potential() const override
+    {
+      return parts.has_potential;
+    }
+
+    double
+    work_along(const Vector &direction, const Vector &force) const override;
+
+    void
+    project_tangent() override;
+
+    /**
+     * dst = C^T K C src, identity on constrained values; C sets hanging nodes
+     * and zeros.
+     */
+    void
+    vmult(Vector &dst, const Vector &src) const override;
+
+    void
+    vmult_lift(Vector &dst, const Vector &src) const override;
+
+    /**
+     * That of the velocity formulation in any case. At masters of hanging
+     * nodes the terms that couple a hanging node to its master are left out.
+     */
+    void
+    diagonal(Vector &diagonal) const override;
+
+    std::unique_ptr<SparseMatrix>
+    make_matrix() const override;
+
+    void
+    assemble(SparseMatrix &matrix) const override;
+
+    /** Translations and, where they are free, rotations. */
+    std::vector<std::vector<double>>
+    near_null_space() const override;
+
+    void
+    initialize(Vector &vector) const override
+    {
+      discretization.initialize(vector);
+    }
+
+    void
+    set_prescribed(Vector &u) const override
+    {
+      constraints.set_prescribed(u);
+    }
+
+    void
+    interpolate_hanging(Vector &vector) const override
+    {
+      discretization.interpolate_hanging(vector);
+    }
+
+    bool
+    is_constrained(const unsigned int local_index) const override
+    {
+      return constraints.is_constrained[local_index];
+    }
+
+    const Vector *
+    weight_of_unknowns() const override
+    {
+      return parts.smoothing != nullptr ? parts.mass : nullptr;
+    }
+
+    double
+    length_scale() const override
+    {
+      return discretization.smallest_cell_extent;
     }
 
     /** What faces and rigid bodies exert (N): the residual before they do. */
@@ -126,199 +146,35 @@ namespace impm
       return forces;
     }
 
-    /**
-     * dst = C^T K C src, identity on constrained values; C sets hanging nodes
-     * and zeros. Collective.
-     */
-    void
-    vmult(Vector &dst, const Vector &src) const;
-
-    /** K src with prescribed values in src, zero where constrained. */
-    void
-    vmult_lift(Vector &dst, const Vector &src) const;
-
-    /**
-     * The same as vmult, but for constrained values, by the matrix that
-     * assemble() has filled.
-     */
-    void
-    vmult_by_matrix(const dealii::TrilinosWrappers::SparseMatrix &matrix,
-                    Vector                                       &dst,
-                    const Vector                                 &src) const;
-
-    /**
-     * The diagonal of vmult, of the velocity formulation in any case. At
-     * masters of hanging nodes the terms that couple a hanging node to its
-     * master are left out. Collective.
-     */
-    void
-    diagonal(Vector &diagonal) const;
-
-    /** Prepares the matrix for assemble() in this step. Collective. */
-    void
-    initialize_matrix(dealii::TrilinosWrappers::SparseMatrix &matrix) const;
-
-    /**
-     * Fills it with the tangent, where constrained with something positive on
-     * the diagonal. Collective.
-     */
-    void
-    assemble(dealii::TrilinosWrappers::SparseMatrix &matrix) const;
-
-    /**
-     * External force of the step (N), with the sign of an internal one, by
-     * local index.
-     */
-    double
-    load_at(const unsigned int index) const
+    /** f(0) (N), where the integrator weighs it or asks for it. */
+    const Vector &
+    start_forces() const
     {
-      const double factor = integrator.force_factor();
-      return factor * load.local_element(index) +
-             (factor < 1 ? (1 - factor) * start_load.local_element(index) : 0.);
+      return forces_at_start;
     }
-
-    /** Whether this is the momentum formulation. */
-    bool
-    in_momentum() const
-    {
-      return smoothing != nullptr;
-    }
-
-    /** Inverse of the lumped mass (1/kg), one where constrained. */
-    void
-    inverse_mass(Vector &inverse) const;
-
-    /** Whether a rotation of the body is free of energy. */
-    bool
-    has_rotations() const
-    {
-      return !axisymmetric;
-    }
-
-    const Footprints<dim> &
-    footprints() const
-    {
-      return prints;
-    }
-
-    unsigned int
-    n_limited_boxes() const
-    {
-      return builder->n_limited_boxes;
-    }
-
-    const BackgroundGrid<dim> &grid;
-    StepConstraints<dim>       constraints;
-    PointResponse<dim>         response;
-    PopulatedCells<dim>        populated;
-
-    // Of the nodes, at the start of the step.
-    Vector                mass;         ///< lumped (kg), if inertia
-    Vector                velocity;     ///< (m/s), if inertia
-    Vector                acceleration; ///< (m/s^2), if the integrator wants it
-    unsigned int          n_held_cells; ///< isolated ones
-    unsigned int          n_active_dofs; ///< neither constrained nor unused
-    mutable unsigned long n_operator_applications = 0;
 
   private:
-    /** Gradients of a vector at all points; its ghosts are up to date. */
-    void
-    gradients_at_points(const Vector &u, std::vector<double> &gradients) const;
-
-    /** force += sum_p B^T stress; ghosts of force not summed. */
-    void
-    add_point_forces(const std::vector<double> &stress, Vector &force) const;
-
-    void
-    mark_support();
-
-    /** Minus the external forces at an instant (N). */
-    void
-    gather_load(double instant, Vector &load);
-
-    void
-    add_body_force(double instant, Vector &load);
-
-    /** Forces at the start of the step, if the integrator weighs them. */
-    void
-    gather_start_forces();
-
-    /** Stiffness times the size of a cell, Sulsky & Kaul's unit of forces. */
-    double
-    force_of_cell() const;
-
-    void
-    hold_isolated_cells();
-
-    /** Inertia and holding stiffness of a local element (N/m). */
-    double
-    diagonal_stiffness(const unsigned int i) const
-    {
-      return holding.local_element(i) +
-             (integrator.has_inertia() ?
-                integrator.mass_factor(dt) * mass.local_element(i) :
-                0.);
-    }
-
-    /** `strain_src` is what strains, `src` what has inertia. */
+    /** `strain_src` is what strains, `src` what the nodes do. */
     void
     apply_tangent(Vector       &dst,
                   const Vector &strain_src,
                   const Vector &src) const;
 
-    /** Adds inertia to `forces` and to its potential; returns their norm. */
-    double
-    add_inertia(const Vector &u, double &potential);
-
-    using Patch = typename Footprints<dim>::Patch;
+    /** Fills a matrix with what strain costs. */
+    void
+    assemble_stiffness(SparseMatrix &matrix) const;
 
     void
-    patch_matrix(const Patch &patch, dealii::FullMatrix<double> &matrix) const;
+    gather_start_forces();
 
-    template <typename Size>
-    void
-    add_points(const Patch                &patch,
-               Size                        n_patch_nodes,
-               dealii::FullMatrix<double> &matrix) const;
+    const Discretization<dim>  &discretization;
+    const StepConstraints<dim> &constraints;
+    const Parts                 parts;
 
-    /** Fills a matrix with what strain costs: inertia is not in it. */
-    void
-    assemble_stiffness(dealii::TrilinosWrappers::SparseMatrix &matrix) const;
-
-    void
-    add_coupling(const Patch &patch, dealii::FullMatrix<double> &matrix) const;
-
-    std::vector<dealii::types::global_dof_index>
-    dofs_of_nodes(const unsigned int *begin, const unsigned int *end) const;
-
-    const Scene<dim>          &scene;
-    const MaterialPoints<dim> &points;
-    const TimeIntegrator      &integrator;
-    const bool                 axisymmetric;
-    const unsigned int         n_gradients; ///< values of a gradient
-    double                     time, dt;
-    bool                       nodes_have_motion = false;
-
-    const std::unique_ptr<FootprintBuilder<dim>> builder;
-    Footprints<dim>                              prints;
-    GhostPenalty<dim>                            ghost;
-    Vector holding;            ///< stiffness of isolated cells (N/m)
-    Vector known_acceleration; ///< (m/s^2)
-    Vector load, start_load;   ///< minus the external forces (N)
-    Vector start_forces;       ///< f(0) (N), if the integrator weighs it
-    Vector start_increment;    ///< dt v (m), in the momentum formulation
-    double force_scale;        ///< norm of the forces at a strain of one (N)
-    double smallest_extent;    ///< of a cell (m)
-
-    std::vector<dealii::Tensor<1, dim>> point_forces; ///< (N)
-
-    mutable std::vector<double> gradient_increments, stress_increments;
-    mutable std::vector<double> slopes, shares; ///< of a point on its patch
-    mutable Vector              work, smooth, smooth_direction;
-    const std::unique_ptr<VelocitySmoothing<dim>> smoothing; ///< or null
+    Vector         forces, free_residual, forces_at_start;
+    mutable Vector work, smooth;
     /** A factor of the matrix in the momentum formulation. */
-    mutable dealii::TrilinosWrappers::SparseMatrix stiffness;
-    Vector                                         forces, free_residual;
+    mutable std::unique_ptr<SparseMatrix> stiffness, spread_mass;
   };
 } // namespace impm
 

@@ -20,11 +20,15 @@ namespace impm
   class PointResponse
   {
   public:
-    PointResponse(const Scene<dim> &scene, const MaterialPoints<dim> &points);
-
-    /** For a step of length dt (s). The gradients become zero. */
-    void
-    begin_step(double dt);
+    /**
+     * For a step of length dt (s), with gradients that are zero. Evaluations of
+     * laws are counted in `n_evaluations`.
+     */
+    PointResponse(const std::vector<BodySpec<dim>> &bodies,
+                  bool                              keeps_stress,
+                  const MaterialPoints<dim>        &points,
+                  double                            dt,
+                  unsigned long                    &n_evaluations);
 
     /**
      * Evaluates the laws at `gradients`; adds V0 times their potential.
@@ -88,12 +92,12 @@ namespace impm
     VolumeAverage<dim>    average;
 
     std::vector<double> gradients, stresses;
-    unsigned long       n_evaluations = 0; ///< of laws, since the start
 
   private:
     const MaterialPoints<dim> &points;
     std::optional<PlaneStress> plane_stress;
-    double                     dt = 0;
+    double                     dt;
+    unsigned long             &n_evaluations;
     std::vector<double>        tangents, histories, end_stresses;
     const unsigned int         n_stress;   ///< values of a stress, if carried
     std::vector<double>        thickening; ///< dF_33 in plane stress

@@ -1,11 +1,11 @@
 #ifndef impm_balance_velocity_smoothing_h
 #define impm_balance_velocity_smoothing_h
 
-#include <deal.II/lac/trilinos_sparse_matrix.h>
-
 #include <impm/footprints/footprints.h>
 #include <impm/grid/step_constraints.h>
+#include <impm/solve/sparse_matrix.h>
 
+#include <memory>
 #include <vector>
 
 namespace impm
@@ -28,14 +28,12 @@ namespace impm
   class VelocitySmoothing
   {
   public:
+    /** For the lumped mass (kg) of this step. Collective. */
     VelocitySmoothing(const MaterialPoints<dim>  &points,
                       const Footprints<dim>      &footprints,
                       const StepConstraints<dim> &constraints,
-                      const BackgroundGrid<dim>  &grid);
-
-    /** For the lumped mass (kg) of this step. Collective. */
-    void
-    begin_step(const Vector &mass);
+                      const Discretization<dim>  &discretization,
+                      const Vector               &mass);
 
     /**
      * result = s(u), with `start` = dt v (m). Ghosts and hanging nodes of the
@@ -48,22 +46,21 @@ namespace impm
     void
     apply_derivative(const Vector &u, Vector &result) const;
 
-    /** Prepares multiply() for the points of this step. Collective. */
-    void
-    assemble();
+    // A, as a matrix, is the product of these two: then K A, for a K that
+    // constraints have been condensed into, keeps the diagonal of constrained
+    // values. It couples nodes that are two cells apart.
 
-    /**
-     * product = K A, for a K that constraints have been condensed into: rows
-     * and columns of constrained values have their diagonal only, which the
-     * product keeps. It couples nodes that are two cells apart. Collective.
-     */
-    void
-    multiply(const dealii::TrilinosWrappers::SparseMatrix &K,
-             dealii::TrilinosWrappers::SparseMatrix       &product) const;
+    /** A diagonal (1/kg), one where constrained. */
+    Vector
+    scaling() const;
+
+    /** S^T m S (kg), identity where constrained. Collective. */
+    std::unique_ptr<SparseMatrix>
+    make_spread_mass() const;
 
   private:
     /** A component of the nodes of a patch, by global index. */
-    std::vector<dealii::types::global_dof_index>
+    SparseMatrix::Dofs
     dofs(const typename Footprints<dim>::Patch &patch,
          unsigned int                           component) const;
 
@@ -75,15 +72,11 @@ namespace impm
     const MaterialPoints<dim>  &points;
     const Footprints<dim>      &footprints;
     const StepConstraints<dim> &constraints;
-    const BackgroundGrid<dim>  &grid;
+    const Discretization<dim>  &discretization;
 
     Vector                                      inverse_mass;
     mutable Vector                              change;
     mutable std::vector<dealii::Tensor<1, dim>> at_points;
-
-    // A is the product of these two.
-    dealii::TrilinosWrappers::MPI::Vector  scaling;
-    dealii::TrilinosWrappers::SparseMatrix spread_mass; ///< S^T m S (kg)
   };
 } // namespace impm
 

@@ -28,13 +28,10 @@ namespace impm
   class VolumeAverage
   {
   public:
-    VolumeAverage(const Scene<dim>          &scene,
-                  const MaterialPoints<dim> &points,
-                  const Kinematics<dim>     &kinematics);
-
     /** Groups the points as they are. */
-    void
-    begin_step();
+    VolumeAverage(const std::vector<BodySpec<dim>> &bodies,
+                  const MaterialPoints<dim>        &points,
+                  const Kinematics<dim>            &kinematics);
 
     /** Whether a point takes part. */
     bool
@@ -90,7 +87,6 @@ namespace impm
   private:
     const MaterialPoints<dim>  &points;
     const Kinematics<dim>      &kinematics;
-    std::vector<char>           body_takes_part;
     bool                        used = false;
     std::vector<double>         start_volume, jacobian;     ///< by point
     std::vector<double>         group_volume, group_change; ///< sums

@@ -2,6 +2,7 @@
 #define impm_footprints_footprint_builder_h
 
 #include <impm/footprints/footprints.h>
+#include <impm/grid/background_grid.h>
 
 #include <memory>
 
@@ -18,16 +19,17 @@ namespace impm
     virtual void
     build(const MaterialPoints<dim> &points,
           const BackgroundGrid<dim> &grid,
+          const Discretization<dim> &discretization,
           Footprints<dim>           &footprints) = 0;
 
     /** Boxes of the last build that had to be cut, of this rank. */
     unsigned int n_limited_boxes = 0;
   };
 
-  /** The builder of the scene's method: every one stands in here. */
+  /** The builder of a method: every one stands in here. */
   template <int dim>
   std::unique_ptr<FootprintBuilder<dim>>
-  make_footprint_builder(const Scene<dim> &scene);
+  make_footprint_builder(const GridSpec<dim> &spec);
 } // namespace impm
 
 #endif

@@ -1,7 +1,7 @@
 #ifndef impm_footprints_footprints_h
 #define impm_footprints_footprints_h
 
-#include <impm/grid/background_grid.h>
+#include <impm/grid/discretization.h>
 #include <impm/points/material_points.h>
 
 #include <array>
@@ -24,7 +24,7 @@ namespace impm
   public:
     static constexpr unsigned int n_nodes = 1u << dim; ///< of a cell
 
-    using CellIterator = typename BackgroundGrid<dim>::CellIterator;
+    using CellIterator = typename Discretization<dim>::CellIterator;
 
     struct Cell
     {
@@ -64,7 +64,7 @@ namespace impm
     void
     build(const std::vector<Piece>  &pieces,
           unsigned int               n_points,
-          const BackgroundGrid<dim> &grid,
+          const Discretization<dim> &discretization,
           const Shape               &shape);
 
     /** The Shape of an axis-aligned cell, times the weight. */
@@ -74,7 +74,7 @@ namespace impm
     /** The Shape of a cell with any corners, by local number of its nodes. */
     static void
     mapped_shape(const Piece               &piece,
-                 const BackgroundGrid<dim> &grid,
+                 const Discretization<dim> &discretization,
                  double                    *values,
                  double                    *gradients);
 

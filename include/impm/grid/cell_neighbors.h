@@ -3,7 +3,7 @@
 
 #include <deal.II/grid/grid_tools.h>
 
-#include <impm/grid/background_grid.h>
+#include <impm/grid/discretization.h>
 
 #include <vector>
 
@@ -12,12 +12,12 @@ namespace impm
   /** Fills the ghost cells of data by active cell index. Collective. */
   template <int dim>
   void
-  exchange_cell_data(const BackgroundGrid<dim> &grid,
+  exchange_cell_data(const Discretization<dim> &discretization,
                      std::vector<double>       &cell_data)
   {
-    using Cell = typename BackgroundGrid<dim>::CellIterator;
+    using Cell = typename Discretization<dim>::CellIterator;
     dealii::GridTools::exchange_cell_data_to_ghosts<double>(
-      grid.dof_handler,
+      discretization.dof_handler(),
       [&](const Cell &cell) { return cell_data[cell->active_cell_index()]; },
       [&](const Cell &cell, const double value) {
         cell_data[cell->active_cell_index()] = value;
@@ -27,10 +27,10 @@ namespace impm
   /** Calls `action` with every active cell that shares a face with a cell. */
   template <int dim, typename Action>
   void
-  for_each_neighbor(const typename BackgroundGrid<dim>::CellIterator &cell,
+  for_each_neighbor(const typename Discretization<dim>::CellIterator &cell,
                     const Action                                     &action)
   {
-    using Cell = typename BackgroundGrid<dim>::CellIterator;
+    using Cell = typename Discretization<dim>::CellIterator;
     for (const unsigned int f : cell->face_indices())
       if (!cell->at_boundary(f))
         {

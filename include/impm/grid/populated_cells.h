@@ -13,14 +13,13 @@ namespace impm
   {
   public:
     /** Collective. */
-    void
-    build(const Footprints<dim>     &footprints,
-          const MaterialPoints<dim> &points,
-          const BackgroundGrid<dim> &grid);
+    PopulatedCells(const Footprints<dim>     &footprints,
+                   const MaterialPoints<dim> &points,
+                   const Discretization<dim> &discretization);
 
     struct Cell
     {
-      typename BackgroundGrid<dim>::CellIterator         cell;
+      typename Discretization<dim>::CellIterator         cell;
       std::array<unsigned int, Footprints<dim>::n_nodes> nodes;
     };
 

@@ -66,6 +66,13 @@ namespace impm
     void
     sort();
 
+    /** Around a change of the grid's cells, then sort(). Collective. */
+    void
+    prepare_for_adaptation();
+
+    void
+    unpack_after_adaptation();
+
     const SortedParticles<dim> &
     points(const unsigned int body) const
     {

@@ -4,11 +4,21 @@
 #include <impm/grid/background_grid.h>
 #include <impm/grid/rigid_bodies.h>
 
+#include <array>
 #include <string>
 #include <vector>
 
 namespace impm
 {
+  /** Displacement of a face along its normal from one time to another (m). */
+  template <int dim>
+  double
+  face_motion(const FaceSpec<dim>       &spec,
+              const BackgroundGrid<dim> &grid,
+              unsigned int               face,
+              double                     from,
+              double                     to);
+
   /**
    * What is known of the grid's increment in one step: hanging nodes, faces
    * of the domain, rigid bodies, and nodes that no material touches.
@@ -17,21 +27,20 @@ namespace impm
   class StepConstraints
   {
   public:
-    StepConstraints(const Scene<dim>          &scene,
-                    const BackgroundGrid<dim> &grid,
-                    const RigidBodies<dim>    &rigid);
+    using Faces = std::array<FaceSpec<dim>, 2 * dim>;
 
     /**
      * For the step from `time` to `time + dt`. `support` is positive where a
      * node that is not hanging has material; its ghosts are up to date.
      * Collective.
      */
-    void
-    build(double time, double dt, const Vector &support);
-
-    /** Displacement of a face along its normal over a step (m). */
-    double
-    face_motion(unsigned int face, double from, double to) const;
+    StepConstraints(const Faces               &faces,
+                    const BackgroundGrid<dim> &grid,
+                    const Discretization<dim> &discretization,
+                    const RigidBodies<dim>    &rigid,
+                    double                     time,
+                    double                     dt,
+                    const Vector              &support);
 
     /** Writes what is prescribed into `u`, zero on unused nodes. Collective. */
     void
@@ -44,13 +53,13 @@ namespace impm
     void
     set_zero(Vector &vector) const;
 
-    /** Hanging nodes from their masters. Ghosts come up to date. Collective. */
+    /**
+     * Zero where a face or a rigid body holds a node at rest in this step. The
+     * points around it go on moving until forces stop them: were their motion
+     * taken for the node's, the wall would stop its mass anew in every step.
+     */
     void
-    interpolate_hanging(Vector &vector) const;
-
-    /** Adds what stands at hanging nodes to their masters. Collective. */
-    void
-    condense_hanging(Vector &vector) const;
+    stop_held(Vector &vector) const;
 
     /**
      * Sum of a vector's values that a face or rigid body holds, projected on
@@ -61,8 +70,6 @@ namespace impm
              const Vector              &vector,
              const std::vector<double> &direction) const;
 
-    dealii::AffineConstraints<double> constraints;
-
     /** Whether a face or rigid body holds a local element. */
     bool
     is_prescribed(const unsigned int index) const
@@ -70,20 +77,20 @@ namespace impm
       return carriers.local_element(index) > 0;
     }
 
+    dealii::AffineConstraints<double> constraints;
+
     /** Whether a local element is constrained. */
     std::vector<char> is_constrained;
 
-    /**
-     * Zero where a face or a rigid body holds a node at rest in this step. The
-     * points around it go on moving until forces stop them: were their motion
-     * taken for the node's, the wall would stop its mass anew in every step.
-     */
-    void
-    stop_held(Vector &vector) const;
-
   private:
     void
-    mark_carriers();
+    hold_faces();
+
+    void
+    hold_rigid_bodies();
+
+    void
+    hold(dealii::types::global_dof_index dof, unsigned int carrier);
 
     double
     prescribed(unsigned int carrier,
@@ -92,21 +99,15 @@ namespace impm
                double       time,
                double       dt) const;
 
-    const Scene<dim>          &scene;
+    const Faces               &faces;
     const BackgroundGrid<dim> &grid;
+    const Discretization<dim> &discretization;
     const RigidBodies<dim>    &rigid;
 
     /** One more than the number of the face, or of the rigid body behind the
      * faces, that holds a value; 0 if none does. */
-    Vector carriers;
-
-    struct HangingValue
-    {
-      unsigned int                                 index;
-      std::vector<std::pair<unsigned int, double>> masters;
-    };
-    std::vector<HangingValue> hanging; ///< those that this rank owns
-    std::vector<char>         rests;   ///< whether held without motion
+    Vector            carriers;
+    std::vector<char> rests; ///< whether held without motion
   };
 } // namespace impm
 

@@ -1,7 +1,7 @@
 #ifndef impm_output_history_h
 #define impm_output_history_h
 
-#include <impm/balance/momentum_balance.h>
+#include <impm/balance/step_problem.h>
 #include <impm/points/point_fields.h>
 
 #include <fstream>
@@ -20,10 +20,10 @@ namespace impm
     unsigned int newton_iterations = 0, linear_iterations = 0,
                  line_searches = 0, step_cuts = 0, projections = 0,
                  solver_fallbacks = 0, noise_stops = 0, held_cells = 0,
-                 limited_boxes = 0;
-    double residual            = 0;
-    double external_work       = 0; ///< since the start (J)
-    double wall_seconds        = 0; ///< since the start
+                 limited_boxes = 0, active_cells = 0, dofs = 0;
+    double residual      = 0;
+    double external_work = 0; ///< since the start (J)
+    double wall_seconds  = 0; ///< since the start
 
     /** Goes on to a later step; counts add up. */
     void
@@ -59,21 +59,21 @@ namespace impm
      * Finds the points that probes follow. Throws InputError for a probe that
      * asks for what this scene does not have. Writes nothing. Collective.
      */
-    History(const Scene<dim>           &scene,
-            const MaterialPoints<dim>  &points,
-            const RigidBodies<dim>     &rigid,
-            const MomentumBalance<dim> &balance);
+    History(const Scene<dim>          &scene,
+            const MaterialPoints<dim> &points,
+            const RigidBodies<dim>    &rigid,
+            const BackgroundGrid<dim> &grid);
 
     /** Starts the file. */
     void
     open(const std::string &directory);
 
     /**
-     * The figures of reactions, which must be taken while the balance stands
-     * at the end of the step, before points and grid move on. Collective.
+     * The figures of reactions at the end of a step that has converged.
+     * Collective.
      */
     void
-    take_reactions();
+    take_reactions(const StepProblem<dim> &problem);
 
     /**
      * Adds a row, after the points have moved, on all that happened since the
@@ -112,7 +112,7 @@ namespace impm
     const Scene<dim>                           &scene;
     const MaterialPoints<dim>                  &points;
     const RigidBodies<dim>                     &rigid;
-    const MomentumBalance<dim>                 &balance;
+    const BackgroundGrid<dim>                  &grid;
     std::vector<Follower>                       followers; ///< by probe
     std::vector<double>                         reactions;
     std::array<double, 2 * dim>                 face_start;

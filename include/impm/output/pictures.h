@@ -1,7 +1,7 @@
 #ifndef impm_output_pictures_h
 #define impm_output_pictures_h
 
-#include <impm/balance/momentum_balance.h>
+#include <impm/grid/rigid_bodies.h>
 #include <impm/points/point_fields.h>
 
 #include <string>
@@ -19,10 +19,10 @@ namespace impm
   {
   public:
     /** Throws InputError when a field has no known name. */
-    Pictures(const OutputSpec           &spec,
-             const MaterialPoints<dim>  &points,
-             const RigidBodies<dim>     &rigid,
-             const MomentumBalance<dim> &balance);
+    Pictures(const OutputSpec          &spec,
+             const MaterialPoints<dim> &points,
+             const RigidBodies<dim>    &rigid,
+             const BackgroundGrid<dim> &grid);
 
     /**
      * Adds a picture of the points as they are and of the grid, which shows
@@ -38,7 +38,7 @@ namespace impm
   private:
     const MaterialPoints<dim>   &points;
     const RigidBodies<dim>      &rigid;
-    const MomentumBalance<dim>  &balance;
+    const BackgroundGrid<dim>   &grid;
     std::vector<PointField<dim>> fields;
     unsigned int                 n_written = 0;
 

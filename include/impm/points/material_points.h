@@ -8,6 +8,7 @@
 #include <impm/scene/scene.h>
 #include <impm/scene/seeding.h>
 
+#include <algorithm>
 #include <functional>
 #include <vector>
 
@@ -122,10 +123,30 @@ namespace impm
     dealii::Point<dim>
     initial_position(const unsigned int point) const
     {
-      dealii::Point<dim> place;
-      for (unsigned int d = 0; d < dim; ++d)
-        place[d] = data[point][offset_initial_position + d];
-      return place;
+      return dealii::Point<dim>(vector(point, offset_initial_position));
+    }
+
+    /** A vector that the points carry, at an offset of the layout. */
+    dealii::Tensor<1, dim>
+    vector(const unsigned int point, const unsigned int offset) const
+    {
+      dealii::Tensor<1, dim> result;
+      std::copy_n(data[point] + offset, dim, result.begin_raw());
+      return result;
+    }
+
+    void
+    set_vector(const unsigned int            point,
+               const unsigned int            offset,
+               const dealii::Tensor<1, dim> &vector)
+    {
+      std::copy_n(vector.begin_raw(), dim, data[point] + offset);
+    }
+
+    dealii::Tensor<1, dim>
+    velocity(const unsigned int point) const
+    {
+      return vector(point, offset_velocity);
     }
 
     /** Fields, place, place in the cell and number of one point. */

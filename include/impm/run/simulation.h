@@ -6,17 +6,19 @@
 
 #include <impm/app/command_line.h>
 #include <impm/app/console.h>
+#include <impm/grid/grid_policy.h>
 #include <impm/output/history.h>
 #include <impm/output/pictures.h>
-#include <impm/solve/step_solver.h>
+#include <impm/run/solve_step.h>
 #include <impm/study/reference.h>
+#include <impm/time/step_control.h>
 
 namespace impm
 {
   /**
    * One run of a scene: the loop over time steps and what it writes. Data
-   * flows one way through a step: points -> footprints -> Newton on the grid
-   * -> points -> next grid.
+   * flows one way through a step: policy -> grid and points -> StepProblem ->
+   * Newton's method -> StepResult -> points -> grid.
    */
   template <int dim>
   class Simulation
@@ -24,11 +26,13 @@ namespace impm
   public:
     /**
      * Builds grid and bodies. Throws InputError when they do not fit; writes
-     * nothing. Collective.
+     * nothing. The policy is that of the scene unless another one is given.
+     * Collective.
      */
-    Simulation(const Scene<dim>      &scene,
-               CommandLine::Verbosity verbosity,
-               MPI_Comm               communicator);
+    Simulation(const Scene<dim>                &scene,
+               CommandLine::Verbosity           verbosity,
+               MPI_Comm                         communicator,
+               std::unique_ptr<GridPolicy<dim>> policy = nullptr);
 
     /** Prints what the points carry and how many there are. Collective. */
     void
@@ -49,23 +53,29 @@ namespace impm
     void
     advance();
 
-    typename StepSolver<dim>::Result
+    /** Prepares a step from points and grid as they are and solves it. */
+    NewtonSolver::Result
     attempt(double dt);
+
+    /** Lets the policy change the cells. */
+    void
+    adapt();
+
+    /** Hands the result of the step to points and grid. */
+    void
+    commit();
 
     /** What time steps are counted in (s): a CFL number of one, or 1. */
     double
     step_unit() const;
 
+    /** That of a CFL number of one. */
+    double
+    cfl_unit() const;
+
     /** Warns of steps that a theta below one half cannot take. */
     void
     warn_of_instability();
-
-    void
-    commit();
-
-    /** Why the converged increment must not be used; empty if it may. */
-    std::string
-    forbidden_motion() const;
 
     double
     external_work_of_step() const;
@@ -85,29 +95,33 @@ namespace impm
                   const std::string &status,
                   const FinerRuns   &finer_runs);
 
-    double
-    grid_motion(unsigned int face) const;
+    const Scene<dim>           scene;
+    const MPI_Comm             communicator;
+    dealii::ConditionalOStream silence;
+    dealii::TimerOutput        timer;
 
-    const Scene<dim>                     &scene;
-    const MPI_Comm                        communicator;
-    dealii::ConditionalOStream            silence;
-    dealii::TimerOutput                   timer;
-    BackgroundGrid<dim>                   grid;
-    MaterialPoints<dim>                   points;
-    RigidBodies<dim>                      rigid;
-    const std::unique_ptr<TimeIntegrator> integrator;
-    MomentumBalance<dim>                  balance;
-    StepSolver<dim>                       step_solver;
-    Pictures<dim>                         pictures;
-    History<dim>                          history;
-    Reference<dim>                        reference;
-    Console                               console;
-    Vector                                u, end_velocity, end_acceleration;
+    // What outlives a step.
+    BackgroundGrid<dim>                    grid;
+    MaterialPoints<dim>                    points;
+    RigidBodies<dim>                       rigid;
+    const std::unique_ptr<GridPolicy<dim>> policy;
+    double                                 time = 0;
+    StepControl                            control;
 
-    dealii::Timer wall;
-    std::string   directory;
-    double        time = 0, step_size, next_picture = 0;
-    StepReport    report;
+    const std::unique_ptr<TimeIntegrator>        integrator;
+    const std::unique_ptr<FootprintBuilder<dim>> builder;
+    WorkCounts                                   counts;
+    std::unique_ptr<StepProblem<dim>>            problem; ///< of this step
+    StepResult                                   result;
+
+    Pictures<dim>  pictures;
+    History<dim>   history;
+    Reference<dim> reference;
+    Console        console;
+    dealii::Timer  wall;
+    std::string    directory;
+    double         next_picture = 0;
+    StepReport     report;
     struct
     {
       unsigned long newton = 0, linear = 0, line_searches = 0, cuts = 0,

@@ -256,6 +256,16 @@ namespace impm
              });
     }
 
+    /** Whether anything acts from outside but what is prescribed. */
+    bool
+    has_loads() const
+    {
+      return body_force || !tractions.empty() ||
+             std::any_of(faces.begin(), faces.end(), [](const auto &face) {
+               return face.traction != nullptr;
+             });
+    }
+
     /** Without inertia there is no velocity. */
     bool
     has_inertia() const

@@ -1,7 +1,7 @@
 #ifndef impm_solve_bfgs_h
 #define impm_solve_bfgs_h
 
-#include <impm/grid/background_grid.h>
+#include <impm/base/vector.h>
 
 #include <deque>
 #include <functional>

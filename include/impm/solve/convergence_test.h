@@ -1,7 +1,7 @@
 #ifndef impm_solve_convergence_test_h
 #define impm_solve_convergence_test_h
 
-#include <impm/balance/momentum_balance.h>
+#include <impm/scene/scene.h>
 
 namespace impm
 {

@@ -1,7 +1,7 @@
 #ifndef impm_solve_difference_quotient_h
 #define impm_solve_difference_quotient_h
 
-#include <impm/balance/momentum_balance.h>
+#include <impm/solve/nonlinear_system.h>
 
 namespace impm
 {
@@ -11,35 +11,41 @@ namespace impm
    * itself, in units of a cell, where u = 0. In the momentum formulation the
    * unknown is that of the nodes.
    */
-  template <int dim>
   class DifferenceQuotient
   {
   public:
-    DifferenceQuotient(MomentumBalance<dim> &balance, double step);
+    DifferenceQuotient(NonlinearSystem &system, double step);
 
-    /** Where the balance stands evaluated at the moment. */
+    /** Where the system stands evaluated at the moment. */
     void
     linearize_at(const Vector &u);
 
     /**
-     * Like MomentumBalance::vmult; leaves the balance evaluated elsewhere.
-     * Throws LinearizationError where the laws have no stress. Collective.
+     * Like NonlinearSystem::vmult; leaves the system evaluated elsewhere.
+     * Throws LinearizationError where there is no residual. Collective.
      */
     void
     vmult(Vector &dst, const Vector &src);
 
-    /** Like MomentumBalance::vmult_lift. */
+    /** Like NonlinearSystem::vmult_lift. */
     void
     vmult_lift(Vector &dst, const Vector &src);
+
+    /** Evaluates the system with its tangent where it was linearized. */
+    void
+    go_back()
+    {
+      system.evaluate(u, true);
+    }
 
   private:
     /** Of an increment, or of the momentum that it stands for. */
     double
     norm(const Vector &increment) const;
 
-    MomentumBalance<dim> &balance;
-    const double          step;
-    Vector                u, residual, direction;
+    NonlinearSystem &system;
+    const double     step;
+    Vector           u, residual, direction;
   };
 } // namespace impm
 

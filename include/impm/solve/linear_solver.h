@@ -3,40 +3,33 @@
 
 #include <deal.II/base/timer.h>
 
-#include <deal.II/lac/solver_control.h>
-#include <deal.II/lac/trilinos_precondition.h>
-#include <deal.II/lac/trilinos_solver.h>
-#include <deal.II/lac/trilinos_sparse_matrix.h>
-
+#include <impm/scene/scene.h>
 #include <impm/solve/difference_quotient.h>
+#include <impm/solve/sparse_matrix.h>
 
 #include <memory>
 
 namespace impm
 {
   /**
-   * Solves the linear systems of Newton's method: CG or GMRES of deal.II with
-   * AMG, Jacobi or no preconditioner, or a direct solver, which also takes
-   * over, counted, where an iterative one fails, unless what it has then is
-   * good enough for Newton's method to go on.
+   * Solves the linear systems of Newton's method in one step: CG or GMRES of
+   * deal.II with AMG, Jacobi or no preconditioner, or a direct solver, which
+   * also takes over, counted, where an iterative one fails, unless what it has
+   * then is good enough for Newton's method to go on.
    */
-  template <int dim>
   class LinearSolver
   {
   public:
-    LinearSolver(const SolverSpec     &spec,
-                 MomentumBalance<dim> &balance,
-                 dealii::TimerOutput  &timer);
+    /** Collective. */
+    LinearSolver(const SolverSpec    &spec,
+                 NonlinearSystem     &system,
+                 dealii::TimerOutput &timer);
 
-    /** Prepares for the sparsity of a new step. Collective. */
-    void
-    begin_step();
-
-    /** Says that the balance stands evaluated at u, for what follows. */
+    /** Says that the system stands evaluated at u, for what follows. */
     void
     linearize_at(const Vector &u);
 
-    /** dst = K src as MomentumBalance::vmult_lift. Collective. */
+    /** dst = K src as NonlinearSystem::vmult_lift. Collective. */
     void
     vmult_lift(Vector &dst, const Vector &src);
 
@@ -50,16 +43,16 @@ namespace impm
     /**
      * Solves with the tangent that was taken last, to the residual `tolerance`
      * times that of zero (a direct solver to round-off). Returns the number of
-     * iterations. Throws ComputationError when even the direct solver fails,
-     * LinearizationError when there is no tangent. Collective.
+     * iterations. Throws LinearizationError when nothing can be solved.
+     * Collective.
      */
     unsigned int
     solve(Vector &x, const Vector &b, double tolerance);
 
-    unsigned int n_fallbacks = 0; ///< to the direct solver, all steps
-    unsigned int n_tangents  = 0; ///< taken, all steps
-
   private:
+    void
+    assemble();
+
     void
     update_preconditioner();
 
@@ -70,13 +63,14 @@ namespace impm
     solve_directly(Vector &x, const Vector &b);
 
     /**
-     * The unknowns of the momentum formulation are the nodes' momenta: an
+     * Unknowns that are momenta are near enough to the right-hand side: an
      * increment of a node with little mass says little.
      */
     bool
     solves_for_momentum() const
     {
-      return balance.in_momentum() && spec.preconditioner == "none";
+      return system.weight_of_unknowns() != nullptr &&
+             spec.preconditioner == "none";
     }
 
     bool
@@ -87,21 +81,16 @@ namespace impm
              spec.preconditioner == "AMG";
     }
 
-    const SolverSpec       &spec;
-    MomentumBalance<dim>   &balance;
-    DifferenceQuotient<dim> quotient;
-    dealii::TimerOutput    &timer;
+    const SolverSpec    &spec;
+    NonlinearSystem     &system;
+    DifferenceQuotient   quotient;
+    dealii::TimerOutput &timer;
 
-    bool                                   matrix_is_current = false;
-    dealii::TrilinosWrappers::SparseMatrix matrix;
-
-    /** Of the matrix as it is, or null. */
-    std::unique_ptr<dealii::TrilinosWrappers::SolverDirect> factors;
-    dealii::SolverControl                                   direct_control;
-
-    dealii::TrilinosWrappers::PreconditionAMG amg;
-    std::vector<double>                       rigid_body_modes;
-    Vector                                    inverse_diagonal;
+    std::unique_ptr<SparseMatrix> matrix;
+    bool                          matrix_is_current = false;
+    std::unique_ptr<DirectSolver> factors; ///< of the matrix as it is, or null
+    AmgPreconditioner             amg;
+    Vector                        inverse_diagonal;
   };
 } // namespace impm
 

@@ -1,7 +1,7 @@
 #ifndef impm_time_time_integrator_h
 #define impm_time_time_integrator_h
 
-#include <impm/grid/background_grid.h>
+#include <impm/base/vector.h>
 #include <impm/scene/scene.h>
 
 #include <memory>

@@ -13,7 +13,7 @@ namespace impm
   namespace
   {
     template <int dim>
-    using CellIterator = typename BackgroundGrid<dim>::CellIterator;
+    using CellIterator = typename Discretization<dim>::CellIterator;
 
     /** Whether this rank, coming from this cell, works on the face. */
     template <int dim>
@@ -32,16 +32,12 @@ namespace impm
   } // namespace
 
   template <int dim>
-  void
-  GhostPenalty<dim>::build(const PopulatedCells<dim> &populated_cells,
-                           const BackgroundGrid<dim> &grid,
-                           const GeometryKind         geometry,
-                           const double               gamma)
+  GhostPenalty<dim>::GhostPenalty(const PopulatedCells<dim> &populated_cells,
+                                  const Mapping<dim>        &mapping,
+                                  const Discretization<dim> &discretization,
+                                  const GeometryKind         geometry,
+                                  const double               gamma)
   {
-    faces.clear();
-    if (gamma == 0)
-      return;
-
     const auto         &stiffness = populated_cells.stiffness;
     std::vector<double> at_edge(stiffness.size());
     for (const auto &cell : populated_cells.cells)
@@ -49,15 +45,15 @@ namespace impm
         if (stiffness[neighbor->active_cell_index()] == 0)
           at_edge[cell.cell->active_cell_index()] = 1;
       });
-    exchange_cell_data(grid, at_edge);
+    exchange_cell_data(discretization, at_edge);
 
     const FE_Q<dim>       fe(1);
     const QGauss<dim - 1> quadrature(2);
     const UpdateFlags     flags = update_gradients | update_normal_vectors |
                               update_quadrature_points | update_JxW_values;
-    FEFaceValues<dim>      here(*grid.mapping, fe, quadrature, flags);
-    FEFaceValues<dim>      there(*grid.mapping, fe, quadrature, flags);
-    FESubfaceValues<dim>   there_coarser(*grid.mapping, fe, quadrature, flags);
+    FEFaceValues<dim>      here(mapping, fe, quadrature, flags);
+    FEFaceValues<dim>      there(mapping, fe, quadrature, flags);
+    FESubfaceValues<dim>   there_coarser(mapping, fe, quadrature, flags);
     constexpr unsigned int half = max_nodes / 2;
     const bool axisymmetric     = geometry == GeometryKind::axisymmetric;
 
@@ -92,7 +88,7 @@ namespace impm
           // the face, which share some.
           Face                                face;
           std::array<unsigned int, max_nodes> place;
-          const auto neighbors = grid.nodes_of(neighbor);
+          const auto neighbors = discretization.nodes_of(neighbor);
           for (unsigned int v = 0; v < max_nodes; ++v)
             {
               const unsigned int node =
@@ -129,16 +125,14 @@ namespace impm
 
   template <int dim>
   void
-  GhostPenalty<dim>::add_force(const Vector &u,
-                               const double  factor,
-                               Vector       &force) const
+  GhostPenalty<dim>::add_force(const Vector &u, Vector &force) const
   {
     for (const auto &face : faces)
       for (unsigned int c = 0; c < dim; ++c)
         {
           std::array<double, max_nodes> values;
           for (unsigned int b = 0; b < face.n_nodes; ++b)
-            values[b] = factor * u.local_element(dim * face.nodes[b] + c);
+            values[b] = u.local_element(dim * face.nodes[b] + c);
           for (unsigned int a = 0; a < face.n_nodes; ++a)
             {
               double sum = 0;
@@ -147,6 +141,35 @@ namespace impm
               force.local_element(dim * face.nodes[a] + c) += sum;
             }
         }
+  }
+
+  template <int dim>
+  void
+  GhostPenalty<dim>::add_diagonal(Vector &diagonal) const
+  {
+    for (const auto &face : faces)
+      for (unsigned int a = 0; a < face.n_nodes; ++a)
+        for (unsigned int c = 0; c < dim; ++c)
+          diagonal.local_element(dim * face.nodes[a] + c) += face.matrix[a][a];
+  }
+
+  template <int dim>
+  void
+  GhostPenalty<dim>::add_matrix(const bool only_pattern, const Block &add) const
+  {
+    FullMatrix<double> local;
+    for (const auto &face : faces)
+      {
+        if (!only_pattern)
+          {
+            local.reinit(dim * face.n_nodes, dim * face.n_nodes);
+            for (unsigned int a = 0; a < face.n_nodes; ++a)
+              for (unsigned int b = 0; b < face.n_nodes; ++b)
+                for (unsigned int c = 0; c < dim; ++c)
+                  local(dim * a + c, dim * b + c) = face.matrix[a][b];
+          }
+        add(face.nodes.data(), face.nodes.data() + face.n_nodes, local);
+      }
   }
 
   template <int dim>

@@ -16,15 +16,16 @@ namespace impm
     template <int dim>
     std::vector<double>
     label_pieces(const PopulatedCells<dim> &populated,
-                 const BackgroundGrid<dim> &grid)
+                 const Discretization<dim> &discretization)
     {
-      std::vector<double> label(grid.triangulation.n_active_cells());
+      std::vector<double> label(
+        discretization.triangulation().n_active_cells());
       for (const auto &cell : populated.cells)
         label[cell.cell->active_cell_index()] =
           1. + cell.cell->global_active_cell_index();
       for (bool changed = true; changed;)
         {
-          exchange_cell_data(grid, label);
+          exchange_cell_data(discretization, label);
           changed = false;
           for (bool again = true; again; changed = changed || again)
             {
@@ -42,7 +43,8 @@ namespace impm
                   });
                 }
             }
-          changed = Utilities::MPI::max(changed ? 1 : 0, grid.communicator);
+          changed =
+            Utilities::MPI::max(changed ? 1 : 0, discretization.communicator);
         }
       return label;
     }
@@ -51,11 +53,11 @@ namespace impm
   template <int dim>
   std::vector<char>
   find_isolated_cells(const PopulatedCells<dim>  &populated,
-                      const BackgroundGrid<dim>  &grid,
+                      const Discretization<dim>  &discretization,
                       const StepConstraints<dim> &constraints,
                       const bool                  axisymmetric)
   {
-    const auto label = label_pieces(populated, grid);
+    const auto label = label_pieces(populated, discretization);
 
     // Directions, as bits, in which something holds a piece; the hoop strain
     // does along the radius.
@@ -71,7 +73,7 @@ namespace impm
               bits |= 1u << d;
       }
     for (const auto &others :
-         Utilities::MPI::all_gather(grid.communicator, held))
+         Utilities::MPI::all_gather(discretization.communicator, held))
       for (const auto &[piece, bits] : others)
         held[piece] |= bits;
 
@@ -86,12 +88,12 @@ namespace impm
 
   template std::vector<char>
   find_isolated_cells(const PopulatedCells<2> &,
-                      const BackgroundGrid<2> &,
+                      const Discretization<2> &,
                       const StepConstraints<2> &,
                       bool);
   template std::vector<char>
   find_isolated_cells(const PopulatedCells<3> &,
-                      const BackgroundGrid<3> &,
+                      const Discretization<3> &,
                       const StepConstraints<3> &,
                       bool);
 } // namespace impm

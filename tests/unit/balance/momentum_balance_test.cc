@@ -1,3 +1,4 @@
+#include <impm/balance/terms/ghost_penalty.h>
 #include <impm/solve/difference_quotient.h>
 
 #include <gtest/gtest.h>
@@ -54,7 +55,7 @@ namespace
   Deviations
   deviations(Model<dim> &model, const Vector &u)
   {
-    auto        &balance = model.balance;
+    auto        &balance = model.balance();
     const Vector s = model.random_direction(11), w = model.random_direction(12);
 
     const auto at = [&](const double h) {
@@ -80,8 +81,8 @@ namespace
                       (balance.residual().l2_norm() * s.l2_norm());
 
     Vector s_free = s, w_free = w;
-    balance.constraints.set_zero(s_free);
-    balance.constraints.set_zero(w_free);
+    model.constraints().set_zero(s_free);
+    model.constraints().set_zero(w_free);
     Vector       Ks = model.vector(), Kw = model.vector();
     const Vector before = s_free;
     balance.vmult(Ks, s_free);
@@ -97,28 +98,27 @@ namespace
     // identity on what is constrained
     Vector mixed = s_free;
     for (unsigned int i = 0; i < mixed.locally_owned_size(); ++i)
-      if (balance.constraints.is_constrained[i])
+      if (model.constraints().is_constrained[i])
         mixed.local_element(i) = 7;
     Vector image = model.vector();
     balance.vmult(image, mixed);
     for (unsigned int i = 0; i < mixed.locally_owned_size(); ++i)
       EXPECT_EQ(image.local_element(i),
-                balance.constraints.is_constrained[i] ? 7. :
+                model.constraints().is_constrained[i] ? 7. :
                                                         Ks.local_element(i));
 
-    TrilinosWrappers::SparseMatrix matrix;
-    balance.initialize_matrix(matrix);
-    balance.assemble(matrix);
+    const auto matrix = balance.make_matrix();
+    balance.assemble(*matrix);
     Vector product = model.vector();
-    balance.vmult_by_matrix(matrix, product, s_free);
+    matrix->vmult(product, s_free);
     product -= Ks;
     result.matrix = product.linfty_norm() / Ks.linfty_norm();
 
     // A matrix that is filled twice is the same.
-    balance.assemble(matrix);
+    balance.assemble(*matrix);
     Vector again = model.vector();
-    balance.vmult_by_matrix(matrix, again, s_free);
-    balance.constraints.set_zero(again);
+    matrix->vmult(again, s_free);
+    model.constraints().set_zero(again);
     again -= Ks;
     result.matrix =
       std::max(result.matrix, again.linfty_norm() / Ks.linfty_norm());
@@ -129,16 +129,16 @@ namespace
     for (unsigned int i = 0; i < diagonal.locally_owned_size(); ++i)
       {
         const auto dof = diagonal.get_partitioner()->local_to_global(i);
-        if (balance.constraints.is_constrained[i])
+        if (model.constraints().is_constrained[i])
           {
             EXPECT_EQ(diagonal.local_element(i), 1.);
             continue;
           }
         EXPECT_GT(diagonal.local_element(i), 0.);
-        largest                 = std::max(largest, matrix.diag_element(dof));
-        difference_of_diagonals = std::max(difference_of_diagonals,
-                                           std::abs(matrix.diag_element(dof) -
-                                                    diagonal.local_element(i)));
+        largest = std::max(largest, matrix->diagonal(dof));
+        difference_of_diagonals =
+          std::max(difference_of_diagonals,
+                   std::abs(matrix->diagonal(dof) - diagonal.local_element(i)));
       }
     const MPI_Comm comm = model.grid.communicator;
     result.diagonal     = Utilities::MPI::max(difference_of_diagonals, comm) /
@@ -147,9 +147,9 @@ namespace
     // The lift of prescribed values: the derivative along them.
     Vector lift = model.random(13, 1.);
     for (unsigned int i = 0; i < lift.locally_owned_size(); ++i)
-      if (!balance.constraints.is_constrained[i])
+      if (!model.constraints().is_constrained[i])
         lift.local_element(i) = 0;
-    balance.constraints.interpolate_hanging(lift);
+    balance.interpolate_hanging(lift);
     Vector pushed = model.vector();
     balance.vmult_lift(pushed, lift);
     error = derivative(
@@ -182,7 +182,7 @@ namespace
 
     model.begin_step();
     Vector u = model.random_increment(1, size);
-    ASSERT_TRUE(model.balance.evaluate(u).admissible);
+    ASSERT_TRUE(model.balance().evaluate(u).admissible);
     model.commit(u);
 
     model.begin_step();
@@ -199,7 +199,8 @@ namespace
       EXPECT_LT(deviation.symmetry, 1e-14);
     else
       EXPECT_GT(deviation.symmetry, 1e-6);
-    if (model.grid.hanging_nodes.n_constraints() == 0 && !momentum)
+    if (model.grid.discretization()->hanging_nodes().n_constraints() == 0 &&
+        !momentum)
       EXPECT_LT(deviation.diagonal, 1e-13);
   }
 
@@ -381,13 +382,13 @@ TEST(MomentumBalanceMpi, DifferenceQuotient)
       const impm::Vector u     = model.random_increment(1, 0.01);
       const impm::Vector s     = model.random_direction(2);
       impm::Vector       exact = model.vector(), approximate = model.vector();
-      ASSERT_TRUE(model.balance.evaluate(u).admissible);
-      model.balance.vmult(exact, s);
+      ASSERT_TRUE(model.balance().evaluate(u).admissible);
+      model.balance().vmult(exact, s);
       std::vector<double> errors;
       for (const double h : {1e-3, 1e-4})
         {
-          DifferenceQuotient<2> quotient(model.balance, h);
-          model.balance.evaluate(u);
+          DifferenceQuotient quotient(model.balance(), h);
+          model.balance().evaluate(u);
           quotient.linearize_at(u);
           quotient.vmult(approximate, s);
           approximate -= exact;
@@ -417,13 +418,15 @@ TEST(MomentumBalanceMpi, GhostPenaltyOfAKink)
       for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
         if (i % 2 == 1)
           u.local_element(i) =
-            k * std::max(0., model.grid.node_positions()[i / 2][0] - 0.25);
-      model.balance.constraints.interpolate_hanging(u);
-      GhostPenalty<2> ghost;
-      ghost.build(model.balance.populated,
-                  model.grid,
-                  model.scene.geometry,
-                  0.03);
+            k * std::max(0.,
+                         model.grid.discretization()->node_positions[i / 2][0] -
+                           0.25);
+      model.problem->discretization->interpolate_hanging(u);
+      const GhostPenalty<2> ghost(model.problem->populated,
+                                  *model.grid.mapping,
+                                  *model.problem->discretization,
+                                  model.scene.geometry,
+                                  0.03);
       // gamma E h (jump)^2 / 2 on a face of length 1; h of the finer side
       const double h = fine_in_part ? 0.125 : 0.25;
       EXPECT_NEAR(Utilities::MPI::sum(ghost.energy(u), MPI_COMM_WORLD) /

@@ -1,3 +1,4 @@
+#include <impm/balance/terms/ghost_penalty.h>
 #include <impm/points/point_fields.h>
 
 #include <gtest/gtest.h>
@@ -39,9 +40,9 @@ namespace
     double             deviation = 0;
     const Tensor<2, 3> one       = unit_symmetric_tensor<3>();
     for (unsigned int p = 0; p < model.points.size(); ++p)
-      deviation =
-        std::max(deviation,
-                 (model.balance.response.increment(p) - one - expected).norm());
+      deviation = std::max(
+        deviation,
+        (model.problem->response.increment(p) - one - expected).norm());
     return Utilities::MPI::max(deviation, MPI_COMM_WORLD);
   }
 
@@ -127,8 +128,8 @@ namespace
     if (kind == "axisymmetric")
       other[0][1] = other[1][0] = other[0][0] = 0;
     Vector w = model.linear_field(other);
-    model.balance.constraints.interpolate_hanging(w);
-    const double work   = model.balance.constraint_forces() * w;
+    model.problem->discretization->interpolate_hanging(w);
+    const double work   = model.balance().constraint_forces() * w;
     double       volume = 0;
     for (unsigned int p = 0; p < model.points.size(); ++p)
       volume += model.points.initial_volume(p);
@@ -200,7 +201,6 @@ namespace
                                  "Grid/Cells=8, 8" +
                                    std::string(dim == 3 ? ", 8" : ""),
                                  "Stabilization/Isolated stiffness=0"});
-    auto             &balance = model.balance;
     model.scatter_points(7);
     if (stressed)
       {
@@ -215,15 +215,15 @@ namespace
         Vector       u = model.linear_field(squeeze, centre);
         const Vector r = model.random(3, 0.003);
         u += r;
-        balance.constraints.interpolate_hanging(u);
-        ASSERT_TRUE(balance.evaluate(u).admissible);
+        model.problem->discretization->interpolate_hanging(u);
+        ASSERT_TRUE(model.balance().evaluate(u).admissible);
         model.commit(u);
       }
 
     model.begin_step();
     const Vector zero   = model.vector();
-    const auto   before = balance.evaluate(zero);
-    const Vector forces = balance.constraint_forces();
+    const auto   before = model.balance().evaluate(zero);
+    const Vector forces = model.balance().constraint_forces();
     const double scale  = stressed ? forces.linfty_norm() : 0.1;
 
     const auto q          = rotation<dim>();
@@ -233,15 +233,15 @@ namespace
     Point<dim> centre;
     centre[0] = 0.3;
     Vector u  = model.linear_field(difference, centre);
-    balance.constraints.interpolate_hanging(u);
-    const auto after = balance.evaluate(u);
+    model.problem->discretization->interpolate_hanging(u);
+    const auto after = model.balance().evaluate(u);
     ASSERT_TRUE(after.admissible);
     EXPECT_LT(largest_deviation(model, in_space(difference)), 1e-13);
     EXPECT_NEAR(after.potential, before.potential, 1e-14);
 
     // Forces turn with the body.
     double      error  = 0;
-    const auto &turned = balance.constraint_forces();
+    const auto &turned = model.balance().constraint_forces();
     for (unsigned int n = 0; n < forces.locally_owned_size() / dim; ++n)
       {
         Tensor<1, dim> f, g;
@@ -255,11 +255,11 @@ namespace
     error = Utilities::MPI::max(error, MPI_COMM_WORLD) / scale;
     EXPECT_LT(error, 1e-11);
 
-    GhostPenalty<dim> ghost;
-    ghost.build(model.balance.populated,
-                model.grid,
-                model.scene.geometry,
-                0.03);
+    const GhostPenalty<dim> ghost(model.problem->populated,
+                                  *model.grid.mapping,
+                                  *model.problem->discretization,
+                                  model.scene.geometry,
+                                  0.03);
     EXPECT_GT(Utilities::MPI::sum(ghost.faces.size(), MPI_COMM_WORLD), 0u);
     EXPECT_NEAR(ghost.energy(u), 0., 1e-16);
 
@@ -276,12 +276,9 @@ namespace
     std::vector<Tensor<2, 3>> stresses;
     for (unsigned int p = 0; p < model.points.size(); ++p)
       stresses.push_back(read_stress(p));
-    advance_points(balance,
+    advance_points(*model.problem,
+                   {model.vector(), model.vector(), model.vector()},
                    model.scene.time,
-                   model.dt,
-                   model.vector(),
-                   model.vector(),
-                   model.vector(),
                    model.points);
     Tensor<2, 3> q3 = in_space(q);
     if (dim == 2)
@@ -381,11 +378,15 @@ TEST(PatchMpi, LinearFieldsHaveTheirGradient)
     model.scatter_points(5);
     model.begin_step();
     auto u = model.linear_field(gradient);
-    model.balance.constraints.interpolate_hanging(u);
-    ASSERT_TRUE(model.balance.evaluate(u).admissible);
+    model.problem->discretization->interpolate_hanging(u);
+    ASSERT_TRUE(model.balance().evaluate(u).admissible);
     EXPECT_LT(largest_deviation(model, in_space(gradient)), 1e-14);
-    GhostPenalty<std::decay_t<decltype(gradient)>::dimension> ghost;
-    ghost.build(model.balance.populated, model.grid, model.scene.geometry, 1.);
+    const GhostPenalty<std::decay_t<decltype(gradient)>::dimension> ghost(
+      model.problem->populated,
+      *model.grid.mapping,
+      *model.problem->discretization,
+      model.scene.geometry,
+      1.);
     EXPECT_GT(Utilities::MPI::sum(ghost.faces.size(), MPI_COMM_WORLD), 0u);
     EXPECT_NEAR(ghost.energy(u), 0., 1e-16);
   };
@@ -451,15 +452,15 @@ TEST(PatchMpi, UniaxialTension)
     up[1] = 1;
     // force on the face, of a box of height 1
     const double load =
-      model.balance.constraints.sum_over("top",
-                                         model.balance.constraint_forces(),
-                                         up);
+      model.constraints().sum_over("top",
+                                   model.balance().constraint_forces(),
+                                   up);
     EXPECT_NEAR(load / (volume * (0.02 + 0.1 * alpha) / 1.2), 1., 1e-10);
 
     const unsigned int offset =
       model.points.history_layout.offset("equivalent_plastic_strain");
     for (unsigned int p = 0; p < model.points.size(); ++p)
-      EXPECT_NEAR(model.balance.response.trial_history(p)[offset],
+      EXPECT_NEAR(model.problem->response.trial_history(p)[offset],
                   alpha,
                   1e-10);
   };

@@ -24,10 +24,10 @@ namespace
   momentum_of_grid(const Model<dim> &model)
   {
     Tensor<1, dim> sum;
-    const auto    &balance = model.balance;
-    for (unsigned int i = 0; i < balance.mass.locally_owned_size(); ++i)
+    const auto    &motion = model.problem->motion;
+    for (unsigned int i = 0; i < motion.mass.locally_owned_size(); ++i)
       sum[i % dim] +=
-        balance.mass.local_element(i) * balance.velocity.local_element(i);
+        motion.mass.local_element(i) * motion.velocity.local_element(i);
     return Utilities::MPI::sum(sum, MPI_COMM_WORLD);
   }
 
@@ -36,8 +36,10 @@ namespace
   mass_of_grid(const Model<dim> &model)
   {
     double sum = 0;
-    for (unsigned int i = 0; i < model.balance.mass.locally_owned_size(); ++i)
-      sum += model.balance.mass.local_element(i);
+    for (unsigned int i = 0;
+         i < model.problem->motion.mass.locally_owned_size();
+         ++i)
+      sum += model.problem->motion.mass.local_element(i);
     return Utilities::MPI::sum(sum, MPI_COMM_WORLD) / dim;
   }
 
@@ -55,10 +57,12 @@ namespace
     const auto difference = momentum_of_grid(model) - totals.momentum;
     EXPECT_LT(difference.norm(), 1e-14 * totals.momentum.norm());
     // nothing at hanging nodes
-    for (unsigned int i = 0; i < model.balance.mass.locally_owned_size(); ++i)
-      if (model.grid.hanging_nodes.is_constrained(
-            model.balance.mass.get_partitioner()->local_to_global(i)))
-        EXPECT_EQ(model.balance.mass.local_element(i), 0.);
+    for (unsigned int i = 0;
+         i < model.problem->motion.mass.locally_owned_size();
+         ++i)
+      if (model.grid.discretization()->hanging_nodes().is_constrained(
+            model.problem->motion.mass.get_partitioner()->local_to_global(i)))
+        EXPECT_EQ(model.problem->motion.mass.local_element(i), 0.);
   }
 
   template <int dim>
@@ -204,13 +208,13 @@ TEST(ConservationMpi, WallTakesWhatThePointsLose)
       for (unsigned int step = 0; step < 10; ++step)
         {
           ASSERT_TRUE(model.solve(u).converged);
-          const auto &forces = model.balance.constraint_forces();
+          const auto &forces = model.balance().constraint_forces();
           for (unsigned int d = 0; d < 2; ++d)
             impulse[d] +=
-              model.dt * model.balance.constraints.sum_over("left",
-                                                            forces,
-                                                            {d == 0 ? 1. : 0.,
-                                                             d == 1 ? 1. : 0.});
+              model.dt * model.constraints().sum_over("left",
+                                                      forces,
+                                                      {d == 0 ? 1. : 0.,
+                                                       d == 1 ? 1. : 0.});
           model.commit(u);
           const auto lost = total(model.points).momentum - start;
           if (step == 0)

@@ -92,10 +92,11 @@ check_folding(const std::string &kind,
                      Overrides{"Time/Time step=0.1",
                                "Materials/rubber/Poisson's ratio=0.45",
                                "Materials/rubber/Law=decoupled neo-Hookean"});
-  const double tolerance = 1e-4 * model.grid.smallest_cell_extent();
-  unsigned int landed    = 0;
-  double       dt        = 0.1;
-  auto         u         = model.vector();
+  const double tolerance =
+    1e-4 * model.grid.discretization()->smallest_cell_extent;
+  unsigned int landed = 0;
+  double       dt     = 0.1;
+  auto         u      = model.vector();
   while (model.time < 1 - 1e-12)
     {
       model.dt          = std::min(dt, 1 - model.time);
@@ -104,7 +105,7 @@ check_folding(const std::string &kind,
       u.update_ghost_values();
       const double part =
         model.rigid.first_touch(u,
-                                model.balance.constraints.is_constrained,
+                                model.constraints().is_constrained,
                                 model.time,
                                 model.time + model.dt);
       ASSERT_GT(part, 0.);
@@ -117,7 +118,7 @@ check_folding(const std::string &kind,
       model.rigid.move(start, model.time);
       const auto   shift = model.rigid.displacement(0, 0, model.time);
       const double face  = 1 + shift[dim - 1];
-      for (const auto &place : model.grid.node_positions())
+      for (const auto &place : model.grid.discretization()->node_positions)
         EXPECT_LT(place[dim - 1], face + 2 * tolerance);
     }
   EXPECT_GT(landed, 0u);

@@ -332,13 +332,14 @@ TEST(LinearLawMpi, AnElasticStepIsALinearProblem)
 
             impm::Vector s = model.random_direction(3), Ks = model.vector(),
                          Kt = model.vector();
-            model.balance.vmult(Ks, s);
-            ASSERT_TRUE(model.balance.evaluate(model.random_increment(4, 0.02))
+            model.balance().vmult(Ks, s);
+            ASSERT_TRUE(model.balance()
+                          .evaluate(model.random_increment(4, 0.02))
                           .admissible);
-            model.balance.vmult(Kt, s);
+            model.balance().vmult(Kt, s);
             Kt -= Ks;
             EXPECT_LT(Kt.l2_norm(), 1e-13 * Ks.l2_norm());
-            ASSERT_TRUE(model.balance.evaluate(u).admissible);
+            ASSERT_TRUE(model.balance().evaluate(u).admissible);
             model.commit(u);
           }
       }

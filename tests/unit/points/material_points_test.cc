@@ -122,7 +122,7 @@ namespace
         expect_all_in_their_cells(model, n);
       }
     model.begin_step();
-    EXPECT_TRUE(model.balance.evaluate(model.vector()).admissible);
+    EXPECT_TRUE(model.balance().evaluate(model.vector()).admissible);
   }
 
   template <int dim>

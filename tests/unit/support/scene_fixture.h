@@ -4,8 +4,9 @@
 #include <deal.II/base/conditional_ostream.h>
 #include <deal.II/base/timer.h>
 
-#include <impm/footprints/transfer.h>
-#include <impm/solve/step_solver.h>
+#include <impm/footprints/scatter.h>
+#include <impm/grid/grid_policy.h>
+#include <impm/run/solve_step.h>
 
 #include <unistd.h>
 
@@ -155,7 +156,7 @@ namespace impm
     return overrides;
   }
 
-  /** All that computes, of one scene. */
+  /** All that computes, of one scene, and the problem of the current step. */
   template <int dim>
   struct Model
   {
@@ -170,16 +171,16 @@ namespace impm
       , grid(scene.grid, communicator)
       , points(scene, grid)
       , rigid(scene, grid)
+      , policy(make_grid_policy(scene.grid, scene.faces))
       , integrator(make_time_integrator(scene.time))
-      , balance(scene, grid, points, rigid, *integrator)
-      , step_solver(scene, balance, *integrator, timer)
+      , builder(make_footprint_builder(scene.grid))
     {}
 
     Vector
     vector() const
     {
       Vector v;
-      grid.initialize(v);
+      grid.discretization()->initialize(v);
       return v;
     }
 
@@ -203,8 +204,8 @@ namespace impm
     random_increment(const unsigned int seed, const double size) const
     {
       Vector u = random(seed, size);
-      balance.constraints.set_prescribed(u);
-      balance.constraints.interpolate_hanging(u);
+      constraints().set_prescribed(u);
+      problem->discretization->interpolate_hanging(u);
       return u;
     }
 
@@ -213,8 +214,8 @@ namespace impm
     random_direction(const unsigned int seed) const
     {
       Vector s = random(seed, 1.);
-      balance.constraints.set_zero(s);
-      balance.constraints.interpolate_hanging(s);
+      constraints().set_zero(s);
+      problem->discretization->interpolate_hanging(s);
       return s;
     }
 
@@ -223,10 +224,10 @@ namespace impm
     linear_field(const dealii::Tensor<2, dim> &gradient,
                  const dealii::Point<dim>     &centre = {}) const
     {
-      Vector u = vector();
+      Vector     u     = vector();
+      const auto nodes = grid.discretization()->node_positions;
       for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
-        u.local_element(i) =
-          (gradient * (grid.node_positions()[i / dim] - centre))[i % dim];
+        u.local_element(i) = (gradient * (nodes[i / dim] - centre))[i % dim];
       u.update_ghost_values();
       return u;
     }
@@ -264,11 +265,10 @@ namespace impm
     commit(const Vector &u)
     {
       u.update_ghost_values();
-      Vector velocity = vector(), acceleration = vector();
-      balance.end_motion(u, velocity, acceleration);
-      advance_points(
-        balance, scene.time, dt, u, velocity, acceleration, points);
-      balance.carry_motion(grid, u, velocity, acceleration);
+      const auto result = problem->end_motion(u);
+      advance_points(*problem, result, scene.time, points);
+      if (grid.is_lagrangian)
+        policy->advance(grid, result, time, time + dt);
       points.sort();
       time += dt;
     }
@@ -276,28 +276,43 @@ namespace impm
     void
     begin_step()
     {
-      balance.begin_step(time, dt);
+      problem.reset();
+      problem = std::make_unique<StepProblem<dim>>(
+        scene, grid, points, rigid, *integrator, *builder, counts, time, dt);
     }
 
     /** Solves for one step, as Simulation does, and leaves it there. */
-    typename StepSolver<dim>::Result
+    NewtonSolver::Result
     solve(Vector &u)
     {
       begin_step();
-      u = vector();
-      return step_solver.solve(dt, u);
+      return solve_step(*problem, scene.solver, timer, u);
     }
 
-    const Scene<dim>                scene;
-    dealii::ConditionalOStream      silence;
-    dealii::TimerOutput             timer;
-    BackgroundGrid<dim>             grid;
-    MaterialPoints<dim>             points;
-    RigidBodies<dim>                rigid;
-    std::unique_ptr<TimeIntegrator> integrator;
-    MomentumBalance<dim>            balance;
-    StepSolver<dim>                 step_solver;
-    double                          time = 0, dt = scene.time.step;
+    MomentumBalance<dim> &
+    balance()
+    {
+      return problem->balance;
+    }
+
+    const StepConstraints<dim> &
+    constraints() const
+    {
+      return problem->constraints;
+    }
+
+    const Scene<dim>                       scene;
+    dealii::ConditionalOStream             silence;
+    dealii::TimerOutput                    timer;
+    BackgroundGrid<dim>                    grid;
+    MaterialPoints<dim>                    points;
+    RigidBodies<dim>                       rigid;
+    std::unique_ptr<GridPolicy<dim>>       policy;
+    std::unique_ptr<TimeIntegrator>        integrator;
+    std::unique_ptr<FootprintBuilder<dim>> builder;
+    WorkCounts                             counts;
+    std::unique_ptr<StepProblem<dim>>      problem; ///< after begin_step()
+    double                                 time = 0, dt = scene.time.step;
   };
 } // namespace impm
 

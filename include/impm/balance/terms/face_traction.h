@@ -14,6 +14,7 @@ namespace impm
   void
   add_face_tractions(const Scene<dim>          &scene,
                      const BackgroundGrid<dim> &grid,
+                     const Discretization<dim> &discretization,
                      double                     instant,
                      double                     factor,
                      Vector                    &force);

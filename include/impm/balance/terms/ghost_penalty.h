@@ -1,6 +1,9 @@
 #ifndef impm_balance_terms_ghost_penalty_h
 #define impm_balance_terms_ghost_penalty_h
 
+#include <deal.II/fe/mapping.h>
+
+#include <impm/balance/terms/term.h>
 #include <impm/grid/populated_cells.h>
 
 #include <vector>
@@ -19,7 +22,7 @@ namespace impm
    * untouched; symmetric, and derives from the energy u . G u / 2.
    */
   template <int dim>
-  class GhostPenalty
+  class GhostPenalty : public Term
   {
   public:
     static constexpr unsigned int max_nodes = 2 * Footprints<dim>::n_nodes;
@@ -32,19 +35,31 @@ namespace impm
     };
 
     /** `gamma` in units of Young's modulus. Collective. */
-    void
-    build(const PopulatedCells<dim> &populated,
-          const BackgroundGrid<dim> &grid,
-          GeometryKind               geometry,
-          double                     gamma);
+    GhostPenalty(const PopulatedCells<dim>  &populated,
+                 const dealii::Mapping<dim> &mapping,
+                 const Discretization<dim>  &discretization,
+                 GeometryKind                geometry,
+                 double                      gamma);
 
-    /** Adds G u; ghosts of `u` are up to date, those of `force` not summed. */
+    /** Adds G u. */
     void
-    add_force(const Vector &u, double factor, Vector &force) const;
+    add_force(const Vector &u, Vector &force) const override;
 
     /** u . G u / 2 of the faces of this rank. */
     double
-    energy(const Vector &u) const;
+    energy(const Vector &u) const override;
+
+    void
+    apply(const Vector &direction, Vector &image) const override
+    {
+      add_force(direction, image);
+    }
+
+    void
+    add_diagonal(Vector &diagonal) const override;
+
+    void
+    add_matrix(bool only_pattern, const Block &add) const override;
 
     std::vector<Face> faces; ///< those that this rank works on
   };

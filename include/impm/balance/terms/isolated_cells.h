@@ -16,7 +16,7 @@ namespace impm
   template <int dim>
   std::vector<char>
   find_isolated_cells(const PopulatedCells<dim>  &populated,
-                      const BackgroundGrid<dim>  &grid,
+                      const Discretization<dim>  &discretization,
                       const StepConstraints<dim> &constraints,
                       bool                        axisymmetric);
 } // namespace impm

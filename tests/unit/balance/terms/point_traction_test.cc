@@ -32,8 +32,10 @@ namespace
   force(const Model<dim> &model)
   {
     Tensor<1, dim> sum;
-    for (unsigned int i = 0; i < model.balance.mass.locally_owned_size(); ++i)
-      sum[i % dim] -= model.balance.load_at(i);
+    for (unsigned int i = 0;
+         i < model.problem->motion.mass.locally_owned_size();
+         ++i)
+      sum[i % dim] -= model.problem->load_at(i);
     return Utilities::MPI::sum(sum, MPI_COMM_WORLD);
   }
 

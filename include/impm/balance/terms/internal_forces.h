@@ -1,0 +1,102 @@
+#ifndef impm_balance_terms_internal_forces_h
+#define impm_balance_terms_internal_forces_h
+
+#include <impm/balance/point_response.h>
+#include <impm/balance/terms/term.h>
+#include <impm/footprints/footprints.h>
+
+#include <vector>
+
+namespace impm
+{
+  /**
+   * The forces of the material: f_I = sum_p V0_p P_p grad N_I with P = tau
+   * dF^-T, where dF = I + sum_I u_I (x) grad N_I, F = dF F_n, gradients at t_n.
+   * The tangent at a point is A = dP/d(dF), that is the spatial tangent of the
+   * Newmark note carried back by dF^-1; see PointResponse.
+   */
+  template <int dim>
+  class InternalForces : public Term
+  {
+  public:
+    /** For footprints with patches, and the points' trial state. The smallest
+     * extent of a cell (m) tells how large a slope can be. */
+    InternalForces(const Footprints<dim> &footprints,
+                   PointResponse<dim>    &response,
+                   double                 smallest_cell_extent);
+
+    bool
+    evaluate(const Vector &u, bool with_tangent) override;
+
+    void
+    add_force(const Vector &, Vector &force) const override
+    {
+      add_forces_of(response.stresses, force);
+    }
+
+    double
+    energy(const Vector &) const override
+    {
+      return potential;
+    }
+
+    double
+    square_of_parts(const Vector &) const override
+    {
+      return response.square_of_stresses() / (extent * extent);
+    }
+
+    bool
+    add_start_force(Vector &force) override;
+
+    void
+    apply(const Vector &direction, Vector &image) const override;
+
+    void
+    add_diagonal(Vector &diagonal) const override;
+
+    void
+    add_matrix(bool only_pattern, const Block &add) const override;
+
+    void
+    project_tangent() override
+    {
+      response.project_tangent();
+    }
+
+  private:
+    using Patch = typename Footprints<dim>::Patch;
+
+    /** Gradients of a vector at all points. */
+    void
+    gradients_at_points(const Vector &u, std::vector<double> &gradients) const;
+
+    /** force += sum_p B^T stress. */
+    void
+    add_forces_of(const std::vector<double> &stresses, Vector &force) const;
+
+    void
+    patch_matrix(const Patch &patch, dealii::FullMatrix<double> &matrix) const;
+
+    template <typename Size>
+    void
+    add_points(const Patch                &patch,
+               Size                        n_patch_nodes,
+               dealii::FullMatrix<double> &matrix) const;
+
+    void
+    add_coupling(const Patch &patch, dealii::FullMatrix<double> &matrix) const;
+
+    const Footprints<dim> &prints;
+    PointResponse<dim>    &response;
+    const bool             axisymmetric;
+    const unsigned int     n_gradients; ///< values of a gradient
+    const double           extent;
+    double                 potential = 0;
+
+    mutable std::vector<double> gradient_changes, stress_changes;
+    mutable std::vector<double> slopes, shares; ///< of a point on its patch
+  };
+} // namespace impm
+
+#endif

@@ -1,0 +1,55 @@
+#ifndef impm_balance_terms_loads_h
+#define impm_balance_terms_loads_h
+
+#include <impm/balance/terms/term.h>
+#include <impm/footprints/footprints.h>
+#include <impm/grid/background_grid.h>
+
+namespace impm
+{
+  /**
+   * Minus the forces from outside at an instant (N), with nothing at hanging
+   * nodes: body force, tractions on points, on faces of a Lagrangian grid.
+   * Collective.
+   */
+  template <int dim>
+  Vector
+  gather_loads(const Scene<dim>          &scene,
+               const MaterialPoints<dim> &points,
+               const Footprints<dim>     &footprints,
+               const BackgroundGrid<dim> &grid,
+               const Discretization<dim> &discretization,
+               double                     instant);
+
+  /** Forces from outside, which do not depend on the increment: dead loads. */
+  class Loads : public Term
+  {
+  public:
+    /** Minus the forces at the start and at the end of the step (N), with
+     * nothing at hanging nodes. */
+    Loads(Vector at_start, Vector at_end)
+      : at_start(std::move(at_start))
+      , at_end(std::move(at_end))
+    {}
+
+    void
+    add_force(const Vector &, Vector &force) const override
+    {
+      force += at_end;
+    }
+
+    double
+    energy(const Vector &u) const override;
+
+    bool
+    add_start_force(Vector &force) override
+    {
+      force += at_start;
+      return true;
+    }
+
+    const Vector at_start, at_end;
+  };
+} // namespace impm
+
+#endif

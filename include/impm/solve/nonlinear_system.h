@@ -1,0 +1,141 @@
+#ifndef impm_solve_nonlinear_system_h
+#define impm_solve_nonlinear_system_h
+
+#include <impm/base/vector.h>
+#include <impm/solve/sparse_matrix.h>
+
+#include <memory>
+#include <vector>
+
+namespace impm
+{
+  /** How often the dear things were done, since the start of a run. */
+  struct WorkCounts
+  {
+    unsigned long stress_evaluations    = 0; ///< of a point, on this rank
+    unsigned long operator_applications = 0; ///< of a tangent
+    unsigned int  tangents              = 0; ///< that were taken
+    unsigned int  solver_fallbacks      = 0; ///< to the direct solver
+  };
+
+  /**
+   * What Newton's method and the linear solvers know of a step: a residual with
+   * its tangent, perhaps a potential, and constraints on the unknown. All is
+   * collective.
+   */
+  class NonlinearSystem
+  {
+  public:
+    virtual ~NonlinearSystem() = default;
+
+    struct Evaluation
+    {
+      bool   admissible = false; ///< whether there is a residual
+      double potential  = 0;     ///< (J)
+      double residual   = 0;     ///< scaled, see unit_of_residual()
+      double round_off  = 0;     ///< below this `residual` is noise
+    };
+
+    /**
+     * Evaluates the residual and, if wanted, the tangent at `u`, which
+     * satisfies the constraints.
+     */
+    virtual Evaluation
+    evaluate(const Vector &u, bool with_tangent) = 0;
+
+    /** Where it was evaluated last (N), zero where constrained. */
+    virtual const Vector &
+    residual() const = 0;
+
+    /** What the norm of residuals is measured in (N). */
+    virtual double
+    unit_of_residual() const = 0;
+
+    /** Whether the residual derives from the potential. */
+    virtual bool
+    has_potential() const = 0;
+
+    /**
+     * What the potential gains of a force (N) along a direction that is zero
+     * where prescribed, hanging nodes included (J).
+     */
+    virtual double
+    work_along(const Vector &direction, const Vector &force) const = 0;
+
+    /**
+     * Replaces the tangent by a positive one, so that the next Newton step
+     * descends. Needs a symmetric tangent.
+     */
+    virtual void
+    project_tangent() = 0;
+
+    /** dst = tangent times src, identity on constrained values. */
+    virtual void
+    vmult(Vector &dst, const Vector &src) const = 0;
+
+    /** The same with prescribed values in src, zero where constrained. */
+    virtual void
+    vmult_lift(Vector &dst, const Vector &src) const = 0;
+
+    /** The diagonal of vmult, or what comes near to it. */
+    virtual void
+    diagonal(Vector &diagonal) const = 0;
+
+    /** A matrix with the pattern of the tangent. */
+    virtual std::unique_ptr<SparseMatrix>
+    make_matrix() const = 0;
+
+    /**
+     * Fills it with the tangent, where constrained with something positive on
+     * the diagonal.
+     */
+    virtual void
+    assemble(SparseMatrix &matrix) const = 0;
+
+    /** Directions that cost hardly any energy, by locally owned value. */
+    virtual std::vector<std::vector<double>>
+    near_null_space() const = 0;
+
+    /** A vector of unknowns, zero. */
+    virtual void
+    initialize(Vector &vector) const = 0;
+
+    /** Writes what is prescribed into `u`, zero on unused values. */
+    virtual void
+    set_prescribed(Vector &u) const = 0;
+
+    /** Hanging nodes from their masters. Ghosts come up to date. */
+    virtual void
+    interpolate_hanging(Vector &vector) const = 0;
+
+    virtual bool
+    is_constrained(unsigned int local_index) const = 0;
+
+    /** Zero on all constrained values that this rank owns. */
+    void
+    set_zero(Vector &vector) const
+    {
+      for (unsigned int i = 0; i < vector.locally_owned_size(); ++i)
+        if (is_constrained(i))
+          vector.local_element(i) = 0;
+    }
+
+    /**
+     * Masses (kg) that make of an increment the unknown that the equations are
+     * meant for, where this is the momentum of the nodes; else null.
+     */
+    virtual const Vector *
+    weight_of_unknowns() const
+    {
+      return nullptr;
+    }
+
+    /** An increment that changes something (m). */
+    virtual double
+    length_scale() const = 0;
+
+    WorkCounts *counts = nullptr; ///< never null in a system that is used
+  };
+} // namespace impm
+
+#endif

@@ -1,0 +1,273 @@
+#include <impm/balance/terms/internal_forces.h>
+
+namespace impm
+{
+  using namespace dealii;
+
+  template <int dim>
+  InternalForces<dim>::InternalForces(const Footprints<dim> &footprints,
+                                      PointResponse<dim>    &response,
+                                      const double smallest_cell_extent)
+    : prints(footprints)
+    , response(response)
+    , axisymmetric(response.kinematics.axisymmetric)
+    , n_gradients(response.kinematics.size)
+    , extent(smallest_cell_extent)
+  {}
+
+  template <int dim>
+  bool
+  InternalForces<dim>::evaluate(const Vector &u, const bool with_tangent)
+  {
+    gradients_at_points(u, response.gradients);
+    potential = 0;
+    return response.evaluate(with_tangent, potential);
+  }
+
+  template <int dim>
+  bool
+  InternalForces<dim>::add_start_force(Vector &force)
+  {
+    const bool fine = response.evaluate_start();
+    add_forces_of(response.stresses, force);
+    return fine;
+  }
+
+  template <int dim>
+  void
+  InternalForces<dim>::apply(const Vector &direction, Vector &image) const
+  {
+    gradient_changes.resize(response.gradients.size());
+    stress_changes.resize(response.gradients.size());
+    gradients_at_points(direction, gradient_changes);
+    response.apply_tangent(gradient_changes, stress_changes);
+    add_forces_of(stress_changes, image);
+  }
+
+  template <int dim>
+  void
+  InternalForces<dim>::add_diagonal(Vector &diagonal) const
+  {
+    FullMatrix<double> local;
+    for (const auto &patch : prints.patches)
+      {
+        patch_matrix(patch, local);
+        for (unsigned int n = patch.begin_nodes; n < patch.end_nodes; ++n)
+          for (unsigned int c = 0; c < dim; ++c)
+            {
+              const unsigned int i = dim * (n - patch.begin_nodes) + c;
+              diagonal.local_element(dim * prints.patch_nodes[n] + c) +=
+                local(i, i);
+            }
+      }
+  }
+
+  template <int dim>
+  void
+  InternalForces<dim>::add_matrix(const bool   only_pattern,
+                                  const Block &add) const
+  {
+    FullMatrix<double> local;
+    for (const auto &patch : prints.patches)
+      {
+        if (!only_pattern)
+          patch_matrix(patch, local);
+        add(prints.patch_nodes.data() + patch.begin_nodes,
+            prints.patch_nodes.data() + patch.end_nodes,
+            local);
+      }
+  }
+
+  template <int dim>
+  void
+  InternalForces<dim>::gradients_at_points(const Vector        &u,
+                                           std::vector<double> &gradients) const
+  {
+    std::fill(gradients.begin(), gradients.end(), 0.);
+    for (const auto &cell : prints.cells)
+      {
+        std::array<double, Footprints<dim>::n_nodes * dim> local;
+        for (unsigned int n = 0; n < Footprints<dim>::n_nodes; ++n)
+          for (unsigned int c = 0; c < dim; ++c)
+            local[dim * n + c] = u.local_element(dim * cell.nodes[n] + c);
+        for (unsigned int e = cell.begin; e < cell.end; ++e)
+          {
+            const unsigned int p        = prints.point[e];
+            const double      *slope    = prints.gradient(e);
+            double            *gradient = &gradients[p * n_gradients];
+            for (unsigned int n = 0; n < Footprints<dim>::n_nodes; ++n)
+              for (unsigned int c = 0; c < dim; ++c)
+                for (unsigned int d = 0; d < dim; ++d)
+                  gradient[dim * c + d] +=
+                    local[dim * n + c] * slope[dim * n + d];
+            if (axisymmetric)
+              for (unsigned int n = 0; n < Footprints<dim>::n_nodes; ++n)
+                gradient[dim * dim] += local[dim * n] * prints.value(e)[n] *
+                                       prints.inverse_radius[p];
+          }
+      }
+  }
+
+  template <int dim>
+  void
+  InternalForces<dim>::add_forces_of(const std::vector<double> &stresses,
+                                     Vector                    &force) const
+  {
+    for (const auto &cell : prints.cells)
+      {
+        std::array<double, Footprints<dim>::n_nodes * dim> local{};
+        for (unsigned int e = cell.begin; e < cell.end; ++e)
+          {
+            const unsigned int p     = prints.point[e];
+            const double      *slope = prints.gradient(e);
+            const double      *P     = &stresses[p * n_gradients];
+            for (unsigned int n = 0; n < Footprints<dim>::n_nodes; ++n)
+              for (unsigned int c = 0; c < dim; ++c)
+                for (unsigned int d = 0; d < dim; ++d)
+                  local[dim * n + c] += P[dim * c + d] * slope[dim * n + d];
+            if (axisymmetric)
+              for (unsigned int n = 0; n < Footprints<dim>::n_nodes; ++n)
+                local[dim * n] +=
+                  P[dim * dim] * prints.value(e)[n] * prints.inverse_radius[p];
+          }
+        for (unsigned int n = 0; n < Footprints<dim>::n_nodes; ++n)
+          for (unsigned int c = 0; c < dim; ++c)
+            force.local_element(dim * cell.nodes[n] + c) += local[dim * n + c];
+      }
+  }
+
+  template <int dim>
+  template <typename Size>
+  void
+  InternalForces<dim>::add_points(const Patch        &patch,
+                                  const Size          n_patch_nodes,
+                                  FullMatrix<double> &matrix) const
+  {
+    constexpr unsigned int n_nodes = Footprints<dim>::n_nodes;
+    for (unsigned int i = patch.begin_points; i < patch.end_points; ++i)
+      {
+        const unsigned int p     = prints.patch_points[i];
+        const unsigned int begin = prints.first[p], end = prints.first[p + 1];
+        const double      *A     = response.tangent(p);
+        const double      *slope = slopes.data();
+        const double      *share = shares.data();
+        const double       inverse_radius =
+          axisymmetric ? prints.inverse_radius[p] : 0.;
+        if (end == begin + 1 && n_patch_nodes == n_nodes)
+          {
+            slope = prints.gradient(prints.entries[begin]);
+            share = prints.value(prints.entries[begin]);
+          }
+        else
+          {
+            std::fill(slopes.begin(), slopes.end(), 0.);
+            std::fill(shares.begin(), shares.end(), 0.);
+            for (unsigned int k = begin; k < end; ++k)
+              for (unsigned int v = 0; v < n_nodes; ++v)
+                {
+                  const unsigned int e = prints.entries[k];
+                  const unsigned int m = prints.place[e * n_nodes + v];
+                  shares[m] += prints.value(e)[v];
+                  for (unsigned int d = 0; d < dim; ++d)
+                    slopes[dim * m + d] += prints.gradient(e)[dim * v + d];
+                }
+          }
+        // rows of A B: one per value of a gradient, one column per unknown
+        for (unsigned int m = 0; m < n_patch_nodes; ++m)
+          for (unsigned int c = 0; c < dim; ++c)
+            {
+              typename Kinematics<dim>::List AB;
+              for (unsigned int a = 0; a < n_gradients; ++a)
+                {
+                  double sum = 0;
+                  for (unsigned int d = 0; d < dim; ++d)
+                    sum +=
+                      A[a * n_gradients + dim * c + d] * slope[dim * m + d];
+                  if (axisymmetric && c == 0)
+                    sum += A[a * n_gradients + dim * dim] * share[m] *
+                           inverse_radius;
+                  AB[a] = sum;
+                }
+              for (unsigned int l = 0; l < n_patch_nodes; ++l)
+                for (unsigned int b = 0; b < dim; ++b)
+                  {
+                    double sum = 0;
+                    for (unsigned int d = 0; d < dim; ++d)
+                      sum += slope[dim * l + d] * AB[dim * b + d];
+                    if (axisymmetric && b == 0)
+                      sum += share[l] * inverse_radius * AB[dim * dim];
+                    matrix(dim * l + b, dim * m + c) += sum;
+                  }
+            }
+      }
+  }
+
+  template <int dim>
+  void
+  InternalForces<dim>::add_coupling(const Patch        &patch,
+                                    FullMatrix<double> &matrix) const
+  {
+    const auto        &average = response.average;
+    const unsigned int first   = prints.patch_points[patch.begin_points];
+    if (!average.includes(first))
+      return;
+    // F-bar: nodal forces of the mean dilation and of what it does.
+    constexpr unsigned int n_nodes = Footprints<dim>::n_nodes;
+    const unsigned int     n       = matrix.m();
+    dealii::Vector<double> dilation(n), answer(n);
+    for (unsigned int i = patch.begin_points; i < patch.end_points; ++i)
+      {
+        const unsigned int p = prints.patch_points[i];
+        const double      *m = &average.mean[p * n_gradients];
+        const double      *b = &average.coupling[p * n_gradients];
+        for (unsigned int k = prints.first[p]; k < prints.first[p + 1]; ++k)
+          for (unsigned int v = 0; v < n_nodes; ++v)
+            {
+              const unsigned int e     = prints.entries[k];
+              const unsigned int l     = prints.place[e * n_nodes + v];
+              const double      *slope = prints.gradient(e) + dim * v;
+              for (unsigned int c = 0; c < dim; ++c)
+                for (unsigned int d = 0; d < dim; ++d)
+                  {
+                    dilation[dim * l + c] += m[dim * c + d] * slope[d];
+                    answer[dim * l + c] += b[dim * c + d] * slope[d];
+                  }
+              if (axisymmetric)
+                {
+                  const double share =
+                    prints.value(e)[v] * prints.inverse_radius[p];
+                  dilation[dim * l] += m[dim * dim] * share;
+                  answer[dim * l] += b[dim * dim] * share;
+                }
+            }
+      }
+    const double square = average.group_square[average.groups[first]];
+    for (unsigned int i = 0; i < n; ++i)
+      for (unsigned int j = 0; j < n; ++j)
+        matrix(i, j) += answer[i] * dilation[j] + dilation[i] * answer[j] +
+                        square * dilation[i] * dilation[j];
+  }
+
+  template <int dim>
+  void
+  InternalForces<dim>::patch_matrix(const Patch        &patch,
+                                    FullMatrix<double> &matrix) const
+  {
+    const unsigned int n = patch.end_nodes - patch.begin_nodes;
+    matrix.reinit(dim * n, dim * n);
+    slopes.resize(dim * n);
+    shares.resize(n);
+    // The most frequent number of nodes deserves loops that unroll.
+    constexpr unsigned int n_nodes = Footprints<dim>::n_nodes;
+    if (n == n_nodes)
+      add_points(patch,
+                 std::integral_constant<unsigned int, n_nodes>(),
+                 matrix);
+    else
+      add_points(patch, n, matrix);
+    add_coupling(patch, matrix);
+  }
+
+  template class InternalForces<2>;
+  template class InternalForces<3>;
+} // namespace impm

@@ -1,0 +1,81 @@
+#include <impm/balance/terms/face_traction.h>
+#include <impm/balance/terms/loads.h>
+#include <impm/balance/terms/point_traction.h>
+
+namespace impm
+{
+  using namespace dealii;
+
+  double
+  Loads::energy(const Vector &u) const
+  {
+    double sum = 0;
+    for (unsigned int i = 0; i < at_end.locally_owned_size(); ++i)
+      sum += at_end.local_element(i) * u.local_element(i);
+    return sum;
+  }
+
+  namespace
+  {
+    template <int dim>
+    void
+    add_body_force(const Scene<dim>          &scene,
+                   const MaterialPoints<dim> &points,
+                   const Footprints<dim>     &footprints,
+                   const double               instant,
+                   Vector                    &load)
+    {
+      scene.body_force->set_time(instant);
+      dealii::Vector<double>      value(dim);
+      std::vector<Tensor<1, dim>> forces(points.size());
+      unsigned int                p = 0;
+      for (const auto &particle : points.sorted.particles)
+        {
+          scene.body_force->vector_value(scene.body_force_is_initial ?
+                                           points.initial_position(p) :
+                                           particle.get_location(),
+                                         value);
+          for (unsigned int c = 0; c < dim; ++c)
+            forces[p][c] = -points.mass(p) * value[c];
+          ++p;
+        }
+      footprints.spread(forces, load);
+    }
+  } // namespace
+
+  template <int dim>
+  Vector
+  gather_loads(const Scene<dim>          &scene,
+               const MaterialPoints<dim> &points,
+               const Footprints<dim>     &footprints,
+               const BackgroundGrid<dim> &grid,
+               const Discretization<dim> &discretization,
+               const double               instant)
+  {
+    Vector load;
+    discretization.initialize(load);
+    if (scene.body_force)
+      add_body_force(scene, points, footprints, instant, load);
+    add_point_tractions(scene, points, footprints, instant, -1., load);
+    if (grid.is_lagrangian)
+      add_face_tractions(scene, grid, discretization, instant, -1., load);
+    load.compress(VectorOperation::add);
+    discretization.condense_hanging(load);
+    return load;
+  }
+
+  template Vector
+  gather_loads(const Scene<2> &,
+               const MaterialPoints<2> &,
+               const Footprints<2> &,
+               const BackgroundGrid<2> &,
+               const Discretization<2> &,
+               double);
+  template Vector
+  gather_loads(const Scene<3> &,
+               const MaterialPoints<3> &,
+               const Footprints<3> &,
+               const BackgroundGrid<3> &,
+               const Discretization<3> &,
+               double);
+} // namespace impm

@@ -1,0 +1,162 @@
+#include <deal.II/dofs/dof_tools.h>
+
+#include <deal.II/fe/fe_q.h>
+
+#include <impm/grid/discretization.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace impm
+{
+  using namespace dealii;
+
+  template <int dim>
+  NodeNumbering<dim>::NodeNumbering(
+    const parallel::TriangulationBase<dim> &triangulation)
+    : triangulation(triangulation)
+    , fe(FE_Q<dim>(1), dim)
+    , dof_handler(triangulation)
+  {
+    dof_handler.distribute_dofs(fe);
+    DoFTools::extract_locally_relevant_dofs(dof_handler, locally_relevant_dofs);
+    const MPI_Comm communicator = triangulation.get_communicator();
+    find_hanging_nodes();
+    partitioner = std::make_shared<Utilities::MPI::Partitioner>(
+      dof_handler.locally_owned_dofs(), locally_relevant_dofs, communicator);
+    for (const auto &line : hanging_nodes.get_lines())
+      if (dof_handler.locally_owned_dofs().is_element(line.index))
+        {
+          HangingValue value;
+          value.index = partitioner->global_to_local(line.index);
+          for (const auto &[master, weight] : line.entries)
+            value.masters.emplace_back(partitioner->global_to_local(master),
+                                       weight);
+          hanging.push_back(std::move(value));
+        }
+    any_hanging =
+      Utilities::MPI::max(hanging.empty() ? 0 : 1, communicator) > 0;
+  }
+
+  template <int dim>
+  void
+  NodeNumbering<dim>::find_hanging_nodes()
+  {
+    hanging_nodes.reinit(locally_relevant_dofs);
+    DoFTools::make_hanging_node_constraints(dof_handler, hanging_nodes);
+    const MPI_Comm communicator = triangulation.get_communicator();
+    if (Utilities::MPI::n_mpi_processes(communicator) > 1 &&
+        triangulation.has_hanging_nodes())
+      {
+        // A box may touch a ghost cell with a node that hangs on a cell which
+        // this rank does not see.
+        hanging_nodes.make_consistent_in_parallel(
+          dof_handler.locally_owned_dofs(),
+          locally_relevant_dofs,
+          communicator);
+        locally_relevant_dofs = hanging_nodes.get_local_lines();
+        for (const auto &line : hanging_nodes.get_lines())
+          for (const auto &entry : line.entries)
+            locally_relevant_dofs.add_index(entry.first);
+        AffineConstraints<double> known(locally_relevant_dofs);
+        known.merge(hanging_nodes,
+                    AffineConstraints<double>::no_conflicts_allowed,
+                    true);
+        hanging_nodes.copy_from(known);
+      }
+    hanging_nodes.close();
+  }
+
+  template <int dim>
+  Discretization<dim>::Discretization(
+    std::shared_ptr<const NodeNumbering<dim>> numbering,
+    const unsigned int                        epoch,
+    const Vector                             *shift)
+    : numbering(std::move(numbering))
+    , communicator(this->numbering->triangulation.get_communicator())
+    , epoch(epoch)
+    , smallest_cell_extent(std::numeric_limits<double>::max())
+  {
+    // Through a vector, for nodes that belong to no cell of this rank.
+    Vector coordinates;
+    initialize(coordinates);
+    for (const auto &cell : dof_handler().active_cell_iterators())
+      if (!cell->is_artificial())
+        {
+          const auto nodes = nodes_of(cell);
+          for (const unsigned int v : cell->vertex_indices())
+            for (unsigned int d = 0; d < dim; ++d)
+              coordinates.local_element(dim * nodes[v] + d) =
+                cell->vertex(v)[d];
+          if (cell->is_locally_owned())
+            for (unsigned int d = 0; d < dim; ++d)
+              smallest_cell_extent =
+                std::min(smallest_cell_extent, cell_extent(cell, d));
+        }
+    smallest_cell_extent =
+      Utilities::MPI::min(smallest_cell_extent, communicator);
+    coordinates.zero_out_ghost_values();
+    if (shift != nullptr)
+      coordinates += *shift;
+    coordinates.update_ghost_values();
+    node_positions.resize((coordinates.locally_owned_size() +
+                           coordinates.get_partitioner()->n_ghost_indices()) /
+                          dim);
+    for (unsigned int n = 0; n < node_positions.size(); ++n)
+      for (unsigned int d = 0; d < dim; ++d)
+        node_positions[n][d] = coordinates.local_element(dim * n + d);
+  }
+
+  template <int dim>
+  std::vector<types::global_dof_index>
+  Discretization<dim>::dofs_of_nodes(const unsigned int *begin,
+                                     const unsigned int *end) const
+  {
+    std::vector<types::global_dof_index> dofs;
+    dofs.reserve(dim * (end - begin));
+    for (; begin != end; ++begin)
+      for (unsigned int c = 0; c < dim; ++c)
+        dofs.push_back(
+          numbering->partitioner->local_to_global(dim * *begin + c));
+    return dofs;
+  }
+
+  template <int dim>
+  void
+  Discretization<dim>::interpolate_hanging(Vector &vector) const
+  {
+    vector.update_ghost_values();
+    if (!numbering->any_hanging)
+      return;
+    for (const auto &value : numbering->hanging)
+      {
+        double sum = 0;
+        for (const auto &[master, weight] : value.masters)
+          sum += weight * vector.local_element(master);
+        vector.local_element(value.index) = sum;
+      }
+    vector.update_ghost_values();
+  }
+
+  template <int dim>
+  void
+  Discretization<dim>::condense_hanging(Vector &vector) const
+  {
+    vector.zero_out_ghost_values();
+    if (!numbering->any_hanging)
+      return;
+    for (const auto &value : numbering->hanging)
+      {
+        for (const auto &[master, weight] : value.masters)
+          vector.local_element(master) +=
+            weight * vector.local_element(value.index);
+        vector.local_element(value.index) = 0;
+      }
+    vector.compress(VectorOperation::add);
+  }
+
+  template class NodeNumbering<2>;
+  template class NodeNumbering<3>;
+  template class Discretization<2>;
+  template class Discretization<3>;
+} // namespace impm

@@ -219,7 +219,9 @@ namespace impm
   StepResult
   StepProblem<dim>::end_motion(const Vector &u) const
   {
-    StepResult result{u, Vector(), Vector()};
+    StepResult result;
+    result.increment = u;
+    result.increment.update_ghost_values(); // which copies may lack
     if (!integrator.has_inertia())
       return result;
     discretization->initialize(result.velocity);

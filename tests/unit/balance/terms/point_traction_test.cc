@@ -32,9 +32,7 @@ namespace
   force(const Model<dim> &model)
   {
     Tensor<1, dim> sum;
-    for (unsigned int i = 0;
-         i < model.problem->motion.mass.locally_owned_size();
-         ++i)
+    for (unsigned int i = 0; i < model.vector().locally_owned_size(); ++i)
       sum[i % dim] -= model.problem->load_at(i);
     return Utilities::MPI::sum(sum, MPI_COMM_WORLD);
   }

@@ -23,12 +23,13 @@ namespace
   void
   run(const CommandLine &line, ParameterFile &file)
   {
-    const Scene<dim> scene =
-      read_scene<dim>(file.handler(), line.parameter_file);
+    Scene<dim> scene = read_scene<dim>(file.handler(), line.parameter_file);
+    scene.warnings.insert(scene.warnings.begin(),
+                          file.warnings.begin(),
+                          file.warnings.end());
     if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
-      for (const auto &warnings : {file.warnings, scene.warnings})
-        for (const auto &warning : warnings)
-          std::cerr << "impm_dealii: warning: " << warning << std::endl;
+      for (const auto &warning : scene.warnings)
+        std::cerr << "impm_dealii: warning: " << warning << std::endl;
     const std::string name =
       std::filesystem::path(line.parameter_file).stem().string();
     std::string directory = line.output_directory;

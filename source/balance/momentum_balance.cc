@@ -1,5 +1,4 @@
 #include <impm/balance/momentum_balance.h>
-#include <impm/base/exceptions.h>
 
 #include <cmath>
 #include <limits>
@@ -19,24 +18,23 @@ namespace impm
     , parts(std::move(the_parts))
   {
     counts = &work_counts;
-    for (Vector *vector :
-         {&forces, &free_residual, &forces_at_start, &work, &smooth})
+    for (Vector *vector : {&forces, &free_residual, &work, &smooth})
       initialize(*vector);
-    if (parts.end_weight < 1)
-      gather_start_forces();
   }
 
   template <int dim>
-  void
-  MomentumBalance<dim>::gather_start_forces()
+  Vector
+  MomentumBalance<dim>::forces_of_strain(const Vector &u) const
   {
-    bool fine = true;
+    Vector result;
+    initialize(result);
+    if (parts.smoothing)
+      parts.smoothing->apply(u, parts.start_increment, smooth);
     for (const auto &term : parts.strain_terms)
-      fine = term->add_start_force(forces_at_start) && fine;
-    if (Utilities::MPI::min(fine ? 1 : 0, discretization.communicator) == 0)
-      throw ComputationError("a point has no stress at the start of a step");
-    forces_at_start.compress(VectorOperation::add);
-    discretization.condense_hanging(forces_at_start);
+      term->add_force(parts.smoothing ? smooth : u, result);
+    result.compress(VectorOperation::add);
+    discretization.condense_hanging(result);
+    return result;
   }
 
   template <int dim>
@@ -68,12 +66,12 @@ namespace impm
         forces.compress(VectorOperation::add);
         discretization.condense_hanging(forces);
       }
-    double noise = forces.l2_norm();
+    const auto strain_forces = parts.norm->squares(forces);
     if (weight < 1)
       {
-        forces.sadd(weight, 1 - weight, forces_at_start);
+        forces.sadd(weight, 1 - weight, parts.start_forces);
         for (unsigned int i = 0; i < forces.locally_owned_size(); ++i)
-          potential += (1 - weight) * forces_at_start.local_element(i) *
+          potential += (1 - weight) * parts.start_forces.local_element(i) *
                        strain_u.local_element(i);
       }
     for (const auto &term : parts.node_terms)
@@ -86,18 +84,60 @@ namespace impm
     constraints.set_zero(free_residual);
     result.admissible = true;
     result.potential  = Utilities::MPI::sum(potential, communicator);
-    result.residual   = free_residual.l2_norm() / parts.unit;
-
-    // What cancels in the residual at most leaves this behind.
-    for (const Terms *terms : {&parts.strain_terms, &parts.node_terms})
-      for (const auto &term : *terms)
-        noise += std::sqrt(
-          Utilities::MPI::sum(term->square_of_parts(u), communicator));
-    result.round_off =
-      16 * std::numeric_limits<double>::epsilon() * noise / parts.unit;
+    judge(u, strain_forces, result);
     if (!std::isfinite(result.residual) || !std::isfinite(result.potential))
       result.admissible = false;
     return result;
+  }
+
+  template <int dim>
+  void
+  MomentumBalance<dim>::judge(const Vector              &u,
+                              const std::vector<double> &strain_forces,
+                              Evaluation                &result) const
+  {
+    const auto         &norm   = *parts.norm;
+    const unsigned int  n      = norm.n_groups();
+    std::vector<double> sums   = norm.squares(free_residual);
+    const auto          append = [&](const std::vector<double> &more) {
+      sums.insert(sums.end(), more.begin(), more.end());
+    };
+    append(strain_forces);
+    for (const Terms *terms : {&parts.strain_terms, &parts.node_terms})
+      for (const auto &term : *terms)
+        {
+          std::vector<double> squares(n);
+          term->add_squares_of_parts(u, norm, squares);
+          append(squares);
+        }
+    Utilities::MPI::sum(sums, discretization.communicator, sums);
+    for (double &sum : sums)
+      sum = std::sqrt(sum);
+
+    // What cancels in the residual at most leaves this behind. A deformation
+    // near one and differences of u have errors of their own, however small
+    // the stress is that comes of them.
+    const double strain =
+      parts.end_weight *
+      (1 + u.linfty_norm() / discretization.smallest_cell_extent);
+    const auto at_work = norm.largest_nearby(
+      std::vector<double>(sums.begin() + n, sums.begin() + 2 * n));
+    result.parts.resize(n);
+    for (unsigned int g = 0; g < n; ++g)
+      {
+        auto &part    = result.parts[g];
+        part.residual = sums[g] / norm.units[g];
+        double noise  = strain * norm.stiffness[g];
+        for (unsigned int i = n + g; i < sums.size(); i += n)
+          noise += sums[i];
+        part.round_off =
+          16 * std::numeric_limits<double>::epsilon() * noise / norm.units[g];
+        if (parts.minds_forces_at_work)
+          part.at_work = at_work[g];
+        // not a number stays so
+        if (!(part.residual <= result.residual))
+          result.residual = part.residual;
+      }
   }
 
   template <int dim>

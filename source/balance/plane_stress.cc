@@ -8,9 +8,10 @@ namespace impm
   bool
   PlaneStress::evaluate(const Material             &material,
                         const dealii::Tensor<2, 3> &start,
+                        const double                dt,
                         const double               *history,
                         double                     *trial_history,
-                        Material::Deformation      &deformation,
+                        dealii::Tensor<2, 3>       &increment,
                         Material::Response         &response,
                         double                     *matrix)
   {
@@ -26,13 +27,14 @@ namespace impm
     double strain = 0, last = infinity, lower = -infinity, upper = infinity;
     for (unsigned int iteration = 0;; ++iteration)
       {
-        deformation.increment[2][2] =
+        increment[2][2] =
           form == Material::Form::linearized ? 1 + strain : std::exp(strain);
-        deformation.total = deformation.increment * start;
         ++n_evaluations;
         if (iteration == 60 ||
-            !material.evaluate(
-              deformation, history, trial_history, true, response))
+            !material.evaluate_one(
+              {increment, increment * start, dt, history, trial_history},
+              true,
+              response))
           return false;
         thick.spatial_tangent(response, form, space.data());
         const double stress = response.kirchhoff_stress[2][2];

@@ -3,6 +3,7 @@
 
 #include <impm/balance/point_response.h>
 
+#include <algorithm>
 #include <utility>
 
 namespace impm
@@ -45,81 +46,146 @@ namespace impm
   }
 
   template <int dim>
-  bool
-  PointResponse<dim>::evaluate(const bool with_tangent, double &potential)
+  void
+  PointResponse<dim>::begin_batch(Batch &batch) const
   {
-    n_evaluations += plane_stress ? 0 : points.size();
-    if (!average.measure(gradients))
-      return false;
-    const unsigned int n_g = kinematics.size;
-    if (with_tangent) // explicit steps never ask for it
-      tangents.resize(points.size() * n_g * n_g);
-    Material::Deformation            deformation;
-    Material::Response               response;
-    typename Kinematics<dim>::Matrix spatial;
-    deformation.dt = dt;
-    for (unsigned int p = 0; p < points.size(); ++p)
+    batch.law = &points.material(batch.first);
+    const unsigned int most =
+      std::min(Batch::max_size, points.size() - batch.first);
+    batch.size = 1;
+    while (batch.size < most &&
+           &points.material(batch.first + batch.size) == batch.law)
+      ++batch.size;
+  }
+
+  template <int dim>
+  bool
+  PointResponse<dim>::evaluate_law(Batch &batch, const bool with_tangent)
+  {
+    const unsigned int                            n = batch.size;
+    typename Batch::template List<Tensor<2, 3>>   start, total;
+    typename Batch::template List<const double *> history;
+    typename Batch::template List<double *>       trial;
+    for (unsigned int i = 0; i < n; ++i)
       {
-        const auto   &law     = points.material(p);
-        const double *fields  = points.fields(p);
-        const double *history = fields + points.offset_history;
-        double       *trial   = &histories[p * points.history_size()];
-        const auto    start =
+        const unsigned int p      = batch.first + i;
+        const double      *fields = points.fields(p);
+        start[i] =
           points.layout.load_tensor(fields + points.offset_deformation);
-        const auto dF = kinematics.deformation(&gradients[p * n_g]);
-        deformation.increment =
-          average.includes(p) ? average.average(p, dF) : dF;
-        if (plane_stress)
+        history[i] = fields + points.offset_history;
+        trial[i]   = &histories[p * points.history_size()];
+        batch.increment[i] =
+          kinematics.deformation(&gradients[p * kinematics.size]);
+      }
+    if (plane_stress)
+      {
+        for (unsigned int i = 0; i < n; ++i)
           {
-            if (!plane_stress->evaluate(law,
-                                        start,
-                                        history,
-                                        trial,
-                                        deformation,
-                                        response,
-                                        with_tangent ? spatial.data() :
+            if (!plane_stress->evaluate(*batch.law,
+                                        start[i],
+                                        dt,
+                                        history[i],
+                                        trial[i],
+                                        batch.increment[i],
+                                        batch.response[i],
+                                        with_tangent ? batch.spatial[i].data() :
                                                        nullptr))
               return false;
-            thickening[p] = deformation.increment[2][2];
+            thickening[batch.first + i] = batch.increment[i][2][2];
           }
-        else
-          {
-            deformation.total = deformation.increment * start;
-            if (!law.evaluate(
-                  deformation, history, trial, with_tangent, response))
-              return false;
-            if (with_tangent)
-              kinematics.spatial_tangent(response, law.form(), spatial.data());
-          }
-        const double volume  = points.initial_volume(p);
-        const auto   inverse = law.form() == Material::Form::linearized ?
-                                 Tensor<2, 3>(unit_symmetric_tensor<3>()) :
-                                 invert(dF);
-        potential += volume * response.potential;
-        if (n_stress > 0)
-          {
-            // that of a linearized law counts from the volume at the start
-            const double growth = law.form() == Material::Form::linearized ?
-                                    determinant(deformation.increment) :
-                                    1.;
-            points.layout.store_symmetric(growth * response.kirchhoff_stress,
-                                          &end_stresses[p * n_stress]);
-          }
-        if (average.includes(p))
+        return true;
+      }
+    if (average.includes(batch.first))
+      for (unsigned int i = 0; i < n; ++i)
+        batch.increment[i] =
+          average.average(batch.first + i, batch.increment[i]);
+    for (unsigned int i = 0; i < n; ++i)
+      total[i] = batch.increment[i] * start[i];
+    if (!batch.law->evaluate({n,
+                              batch.increment.data(),
+                              total.data(),
+                              dt,
+                              history.data(),
+                              trial.data()},
+                             with_tangent,
+                             batch.response.data()))
+      return false;
+    if (with_tangent)
+      {
+        const auto form = batch.law->form();
+        for (unsigned int i = 0; i < n; ++i)
+          kinematics.spatial_tangent(batch.response[i],
+                                     form,
+                                     batch.spatial[i].data());
+      }
+    return true;
+  }
+
+  template <int dim>
+  void
+  PointResponse<dim>::carry_back(Batch     &batch,
+                                 const bool with_tangent,
+                                 double    &potential)
+  {
+    const unsigned int n_g = kinematics.size;
+    const bool linearized  = batch.law->form() == Material::Form::linearized;
+    const bool averaged    = average.includes(batch.first);
+    for (unsigned int i = 0; i < batch.size; ++i)
+      potential +=
+        points.initial_volume(batch.first + i) * batch.response[i].potential;
+    if (n_stress > 0)
+      for (unsigned int i = 0; i < batch.size; ++i)
+        {
+          // that of a linearized law counts from the volume at the start
+          const double growth =
+            linearized ? determinant(batch.increment[i]) : 1.;
+          points.layout.store_symmetric(
+            growth * batch.response[i].kirchhoff_stress,
+            &end_stresses[(batch.first + i) * n_stress]);
+        }
+    for (unsigned int i = 0; i < batch.size; ++i)
+      {
+        const unsigned int p      = batch.first + i;
+        const double       volume = points.initial_volume(p);
+        const Tensor<2, 3> inverse =
+          linearized ? Tensor<2, 3>(unit_symmetric_tensor<3>()) :
+                       invert(kinematics.deformation(&gradients[p * n_g]));
+        if (averaged)
           average.take_out_pressure(p,
                                     volume,
                                     inverse,
-                                    response,
-                                    with_tangent ? spatial.data() : nullptr);
-        kinematics.carry_back_stress(response.kirchhoff_stress,
+                                    batch.response[i],
+                                    with_tangent ? batch.spatial[i].data() :
+                                                   nullptr);
+        kinematics.carry_back_stress(batch.response[i].kirchhoff_stress,
                                      inverse,
                                      volume,
                                      &stresses[p * n_g]);
         if (with_tangent)
-          kinematics.carry_back_tangent(spatial.data(),
+          kinematics.carry_back_tangent(batch.spatial[i].data(),
                                         inverse,
                                         volume,
                                         &tangents[p * n_g * n_g]);
+      }
+  }
+
+  template <int dim>
+  bool
+  PointResponse<dim>::evaluate(const bool with_tangent, double &potential)
+  {
+    n_evaluations += plane_stress ? 0 : points.size();
+    if (!average.measure(gradients, with_tangent))
+      return false;
+    if (with_tangent) // explicit steps never ask for it
+      tangents.resize(points.size() * kinematics.size * kinematics.size);
+    Batch batch;
+    for (batch.first = 0; batch.first < points.size();
+         batch.first += batch.size)
+      {
+        begin_batch(batch);
+        if (!evaluate_law(batch, with_tangent))
+          return false;
+        carry_back(batch, with_tangent, potential);
       }
     average.share_pressure(gradients, with_tangent, stresses, tangents);
     if (plane_stress)
@@ -233,13 +299,19 @@ namespace impm
   }
 
   template <int dim>
-  double
-  PointResponse<dim>::square_of_stresses() const
+  void
+  PointResponse<dim>::add_squares_of_stresses(
+    const std::vector<unsigned int> &group_of_body,
+    std::vector<double>             &squares) const
   {
-    double sum = 0;
-    for (const double s : stresses)
-      sum += s * s;
-    return sum;
+    const unsigned int n_g = kinematics.size;
+    for (unsigned int p = 0; p < points.size(); ++p)
+      {
+        double sum = 0;
+        for (unsigned int a = p * n_g; a < (p + 1) * n_g; ++a)
+          sum += stresses[a] * stresses[a];
+        squares[group_of_body[points.body(p)]] += sum;
+      }
   }
 
   template class PointResponse<2>;

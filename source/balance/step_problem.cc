@@ -1,10 +1,10 @@
-#include <impm/balance/residual_unit.h>
 #include <impm/balance/step_problem.h>
 #include <impm/balance/terms/ghost_penalty.h>
 #include <impm/balance/terms/holding.h>
 #include <impm/balance/terms/inertia.h>
 #include <impm/balance/terms/internal_forces.h>
 #include <impm/balance/terms/loads.h>
+#include <impm/base/exceptions.h>
 
 #include <algorithm>
 
@@ -19,10 +19,13 @@ namespace impm
     build_footprints(FootprintBuilder<dim>     &builder,
                      const MaterialPoints<dim> &points,
                      const BackgroundGrid<dim> &grid,
-                     const Discretization<dim> &discretization)
+                     const Discretization<dim> &discretization,
+                     const bool                 has_inertia)
     {
       Footprints<dim> footprints;
       builder.build(points, grid, discretization, footprints);
+      if (has_inertia && !grid.is_lagrangian)
+        footprints.release_massless_nodes(discretization);
       return footprints;
     }
   } // namespace
@@ -41,12 +44,22 @@ namespace impm
     , dt(dt)
     , integrator(integrator)
     , discretization(grid.discretization())
-    , footprints(build_footprints(builder, points, grid, *discretization))
+    , footprints(build_footprints(
+        builder, points, grid, *discretization, integrator.has_inertia()))
     , populated(footprints, points, *discretization)
-    , unit_strain_forces(
-        forces_at_unit_strain(points, footprints, *discretization))
-    , constraints(
-        scene.faces, grid, *discretization, rigid, time, dt, unit_strain_forces)
+    , norm(scene.solver.residual_scale,
+           dt,
+           scene.bodies,
+           points,
+           footprints,
+           *discretization)
+    , constraints(scene.faces,
+                  grid,
+                  *discretization,
+                  rigid,
+                  time,
+                  dt,
+                  norm.unit_strain_forces)
     , response(scene.bodies,
                scene.keeps_stress(),
                points,
@@ -71,25 +84,7 @@ namespace impm
               constraints,
               make_parts(scene, grid, points),
               counts)
-    , start_acceleration(find_start_acceleration())
   {}
-
-  template <int dim>
-  Vector
-  StepProblem<dim>::find_start_acceleration() const
-  {
-    Vector acceleration = motion.acceleration;
-    if (!integrator.has_inertia() || integrator.keeps_acceleration() ||
-        integrator.force_factor() == 1)
-      return acceleration;
-    const Vector &forces = balance.start_forces();
-    for (unsigned int i = 0; i < acceleration.locally_owned_size(); ++i)
-      acceleration.local_element(i) =
-        motion.mass.local_element(i) > 0 && !constraints.is_constrained[i] ?
-          -forces.local_element(i) / motion.mass.local_element(i) :
-          0.;
-    return acceleration;
-  }
 
   template <int dim>
   unsigned int
@@ -105,12 +100,12 @@ namespace impm
   }
 
   template <int dim>
-  typename MomentumBalance<dim>::Parts
+  typename StepProblem<dim>::Parts
   StepProblem<dim>::make_parts(const Scene<dim>          &scene,
                                const BackgroundGrid<dim> &grid,
                                const MaterialPoints<dim> &points)
   {
-    typename MomentumBalance<dim>::Parts parts;
+    Parts parts;
     parts.end_weight    = integrator.force_factor();
     parts.has_rotations = scene.geometry != GeometryKind::axisymmetric;
     parts.has_potential =
@@ -119,47 +114,99 @@ namespace impm
                   [](const auto &body) {
                     return body.rigid || body.material->has_potential();
                   });
-    parts.unit             = residual_unit(scene.solver.residual_scale,
-                               unit_strain_forces,
-                               dt,
-                               scene.bodies,
-                               points,
-                               footprints,
-                               *discretization);
-    const bool is_explicit = integrator.is_explicit();
-    if (!is_explicit)
+    parts.norm = &norm;
+    // Inertia may be so little against stiffness that a residual which is
+    // small against this one stops a motion.
+    parts.minds_forces_at_work = norm.is_by_body && integrator.has_inertia();
+    if (!integrator.is_explicit())
       footprints.make_patches(response.average.groups);
+    if (smoothing)
+      {
+        parts.smoothing       = smoothing.get();
+        parts.start_increment = motion.velocity;
+        parts.start_increment *= dt;
+      }
+    add_strain_terms(scene, grid, points, parts);
+    find_start_forces(parts);
+    add_node_terms(scene, points, parts);
+    return parts;
+  }
 
-    parts.strain_terms.push_back(std::make_unique<InternalForces<dim>>(
+  template <int dim>
+  void
+  StepProblem<dim>::add_strain_terms(const Scene<dim>          &scene,
+                                     const BackgroundGrid<dim> &grid,
+                                     const MaterialPoints<dim> &points,
+                                     Parts                     &parts)
+  {
+    auto &terms = parts.strain_terms;
+    terms.push_back(std::make_unique<InternalForces<dim>>(
       footprints, response, discretization->smallest_cell_extent));
-    if (scene.stabilization.ghost_penalty > 0)
-      parts.strain_terms.push_back(
-        std::make_unique<GhostPenalty<dim>>(populated,
-                                            *grid.mapping,
-                                            *discretization,
-                                            scene.geometry,
-                                            scene.stabilization.ghost_penalty));
+    if (scene.stabilization.ghost_penalty > 0 && !integrator.is_explicit())
+      {
+        terms.push_back(std::make_unique<GhostPenalty<dim>>(
+          populated,
+          *grid.mapping,
+          *discretization,
+          scene.geometry,
+          scene.stabilization.ghost_penalty));
+        stabilization = terms.back().get();
+      }
     if (scene.has_loads())
       {
-        const auto gather = [&](const bool wanted, const double instant) {
-          Vector nothing;
-          discretization->initialize(nothing);
-          return wanted ? gather_loads(scene,
-                                       points,
-                                       footprints,
-                                       grid,
-                                       *discretization,
-                                       instant) :
-                          nothing;
+        const auto at = [&](const double instant) {
+          return gather_loads(scene,
+                              points,
+                              footprints,
+                              grid,
+                              *discretization,
+                              populated,
+                              instant);
         };
-        auto term = std::make_unique<Loads>(gather(parts.end_weight < 1, time),
-                                            gather(!is_explicit, time + dt));
+        auto term = std::make_unique<Loads>(at(time), at(time + dt));
         loads     = term.get();
-        parts.strain_terms.push_back(std::move(term));
+        terms.push_back(std::move(term));
       }
+  }
 
-    if (!integrator.has_inertia() && scene.stabilization.isolated_stiffness > 0)
+  template <int dim>
+  void
+  StepProblem<dim>::find_start_forces(Parts &parts)
+  {
+    start_acceleration = motion.acceleration;
+    // Points that carry their acceleration have none yet when they start.
+    if (!integrator.needs_start_forces() &&
+        !(integrator.keeps_acceleration() && time == 0))
+      return;
+    auto &forces = parts.start_forces;
+    discretization->initialize(forces);
+    bool fine = true;
+    for (const auto &term : parts.strain_terms)
+      fine = term->add_start_force(forces) && fine;
+    // One rank alone may have the point: all must learn of it.
+    if (Utilities::MPI::min(fine ? 1 : 0, discretization->communicator) == 0)
+      throw ComputationError("at t = " + std::to_string(time) +
+                             " s: a point has no stress at the start of a "
+                             "step");
+    forces.compress(VectorOperation::add);
+    discretization->condense_hanging(forces);
+    for (unsigned int i = 0; i < forces.locally_owned_size(); ++i)
+      start_acceleration.local_element(i) =
+        motion.mass.local_element(i) > 0 && !constraints.is_constrained[i] ?
+          -forces.local_element(i) / motion.mass.local_element(i) :
+          0.;
+  }
+
+  template <int dim>
+  void
+  StepProblem<dim>::add_node_terms(const Scene<dim>          &scene,
+                                   const MaterialPoints<dim> &points,
+                                   Parts                     &parts)
+  {
+    if (!integrator.has_inertia())
       {
+        if (scene.stabilization.isolated_stiffness == 0)
+          return;
         auto term = std::make_unique<Holding<dim>>(
           points,
           footprints,
@@ -170,38 +217,28 @@ namespace impm
         n_held_cells = term->n_cells;
         if (n_held_cells > 0)
           parts.node_terms.push_back(std::move(term));
+        return;
       }
-    if (integrator.has_inertia())
-      {
-        Vector known;
-        discretization->initialize(known);
-        integrator.known_acceleration(dt,
-                                      motion.velocity,
-                                      motion.acceleration,
-                                      known);
-        const auto smooth = [this](const Vector &u, Vector &smoothed) {
-          smoothed = u;
-          constraints.set_zero(smoothed);
-          discretization->interpolate_hanging(smoothed);
-          smoothing->apply_derivative(smoothed, smoothed);
-        };
-        parts.node_terms.push_back(
-          smoothing ? std::make_unique<Inertia>(motion.mass,
-                                                integrator.mass_factor(dt),
-                                                std::move(known),
-                                                smooth) :
-                      std::make_unique<Inertia>(motion.mass,
-                                                integrator.mass_factor(dt),
-                                                std::move(known)));
-        parts.mass = &motion.mass;
-      }
+    Vector known;
+    discretization->initialize(known);
+    integrator.known_acceleration(dt,
+                                  motion.velocity,
+                                  start_acceleration,
+                                  known);
+    std::function<void(const Vector &, Vector &)> smooth;
     if (smoothing)
-      {
-        parts.smoothing       = smoothing.get();
-        parts.start_increment = motion.velocity;
-        parts.start_increment *= dt;
-      }
-    return parts;
+      smooth = [this](const Vector &u, Vector &smoothed) {
+        smoothed = u;
+        constraints.set_zero(smoothed);
+        discretization->interpolate_hanging(smoothed);
+        smoothing->apply_derivative(smoothed, smoothed);
+      };
+    parts.node_terms.push_back(
+      std::make_unique<Inertia>(motion.mass,
+                                integrator.mass_factor(dt),
+                                std::move(known),
+                                std::move(smooth)));
+    parts.mass = &motion.mass;
   }
 
   template <int dim>
@@ -213,6 +250,19 @@ namespace impm
     u *= dt * dt;
     u.add(dt, motion.velocity);
     constraints.set_prescribed(u);
+  }
+
+  template <int dim>
+  Vector
+  StepProblem<dim>::end_forces(const Vector &u) const
+  {
+    if (integrator.force_factor() == 1 && !integrator.keeps_acceleration())
+      return balance.constraint_forces();
+    Vector forces = balance.forces_of_strain(u);
+    for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
+      if (constraints.is_constrained[i])
+        forces.local_element(i) += held_inertia(u, i);
+    return forces;
   }
 
   template <int dim>

@@ -1,5 +1,6 @@
 #include <impm/balance/volume_average.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace impm
@@ -58,13 +59,15 @@ namespace impm
 
   template <int dim>
   bool
-  VolumeAverage<dim>::measure(const std::vector<double> &gradients)
+  VolumeAverage<dim>::measure(const std::vector<double> &gradients,
+                              const bool                 with_tangent)
   {
     if (!used)
       return true;
     group_change.assign(group_volume.size(), 0.);
     group_pressure.assign(group_volume.size(), 0.);
-    group_square.assign(group_volume.size(), 0.);
+    if (with_tangent)
+      group_square.assign(group_volume.size(), 0.);
     for (unsigned int p = 0; p < groups.size(); ++p)
       if (includes(p))
         {
@@ -174,16 +177,17 @@ namespace impm
         const double pressure = group_pressure[g];
         const auto   inverse =
           invert(kinematics.deformation(&gradients[p * n_g]));
-        double *m = &mean[p * n_g];
+        typename Kinematics<dim>::List m{};
         kinematics.carry_back_stress(unit_symmetric_tensor<3>(),
                                      inverse,
                                      share,
-                                     m);
+                                     m.data());
         for (unsigned int a = 0; a < n_g; ++a)
           stresses[p * n_g + a] += pressure * m[a];
         if (!with_tangent)
           continue;
         // From the second derivative of ln theta: share (tr g tr h - tr(g h)).
+        std::copy_n(m.begin(), n_g, &mean[p * n_g]);
         double *A = &tangents[p * n_g * n_g];
         for (unsigned int a = 0; a < n_g; ++a)
           for (unsigned int b = 0; b < n_g; ++b)

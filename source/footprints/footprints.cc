@@ -143,6 +143,66 @@ namespace impm
 
   template <int dim>
   void
+  Footprints<dim>::release_massless_nodes(
+    const Discretization<dim> &discretization)
+  {
+    // The node is across in a direction if it has no share, and its neighbour
+    // in that direction has one.
+    const double tiny      = 1e-13;
+    const auto   is_across = [&](const unsigned int e, const unsigned int d) {
+      for (unsigned int side = 0; side < 2; ++side)
+        {
+          double sum = 0;
+          for (unsigned int v = 0; v < n_nodes; ++v)
+            if ((v >> d & 1u) == side)
+              sum += value(e)[v];
+          if (sum <= tiny * weight[e])
+            return static_cast<int>(side);
+        }
+      return -1;
+    };
+    std::vector<std::pair<unsigned int, unsigned int>> on_faces;
+    for (unsigned int e = 0; e < n_entries(); ++e)
+      for (unsigned int d = 0; d < dim; ++d)
+        if (is_across(e, d) >= 0)
+          on_faces.emplace_back(e, d);
+    const MPI_Comm communicator = discretization.communicator;
+    if (Utilities::MPI::max(on_faces.size(), communicator) == 0)
+      return;
+
+    Vector shares;
+    discretization.initialize(shares);
+    for (const auto &cell : cells)
+      for (unsigned int e = cell.begin; e < cell.end; ++e)
+        for (unsigned int v = 0; v < n_nodes; ++v)
+          shares.local_element(dim * cell.nodes[v]) += value(e)[v];
+    shares.compress(VectorOperation::add);
+    discretization.condense_hanging(shares);
+    discretization.interpolate_hanging(shares);
+    for (const auto &[e, d] : on_faces)
+      {
+        const auto  side      = static_cast<unsigned int>(is_across(e, d));
+        const auto &nodes     = cells[cell_of_entry[e]].nodes;
+        double      elsewhere = 0;
+        for (unsigned int v = 0; v < n_nodes; ++v)
+          if ((v >> d & 1u) == side)
+            elsewhere += shares.local_element(dim * nodes[v]);
+        if (elsewhere > tiny)
+          continue;
+        for (unsigned int v = 0; v < n_nodes; ++v)
+          {
+            gradients[(e * n_nodes + v) * dim + d] = 0;
+            if ((v >> d & 1u) != side)
+              continue;
+            values[e * n_nodes + v] = 0;
+            for (unsigned int c = 0; c < dim; ++c)
+              gradients[(e * n_nodes + v) * dim + c] = 0;
+          }
+      }
+  }
+
+  template <int dim>
+  void
   Footprints<dim>::make_patches(const std::vector<unsigned int> &coupled)
   {
     patches.clear();

@@ -216,6 +216,21 @@ namespace impm
     return Utilities::MPI::sum(sum, discretization.communicator);
   }
 
+  template <int dim>
+  std::array<bool, 2 * dim>
+  StepConstraints<dim>::faces_that_hold() const
+  {
+    std::vector<unsigned int> counts(2 * dim), sums(2 * dim);
+    for (unsigned int i = 0; i < carriers.locally_owned_size(); ++i)
+      if (const unsigned int face = carrier(i); face < 2 * dim)
+        ++counts[face];
+    Utilities::MPI::sum(counts, discretization.communicator, sums);
+    std::array<bool, 2 * dim> hold;
+    for (unsigned int f = 0; f < 2 * dim; ++f)
+      hold[f] = sums[f] > 0;
+    return hold;
+  }
+
   template double
   face_motion(const FaceSpec<2> &,
               const BackgroundGrid<2> &,

@@ -3,6 +3,7 @@
 #include <impm/points/point_fields.h>
 
 #include <algorithm>
+#include <sstream>
 
 namespace impm
 {
@@ -16,7 +17,114 @@ namespace impm
         all += (all.empty() ? "" : ", ") + name;
       return all.empty() ? "none" : all;
     }
+
+    /**
+     * What holds one component holds the normal only where the map leaves the
+     * face a plane across its axis: looks at all vertices of the face.
+     */
+    template <int dim>
+    void
+    check_mapped_face(const GridSpec<dim> &grid,
+                      const FaceSpec<dim> &face,
+                      const unsigned int   number)
+    {
+      const unsigned int     normal = number / 2;
+      dealii::Vector<double> image(dim);
+      dealii::Point<dim>     lower, upper;
+      unsigned int           n = 1;
+      for (unsigned int d = 0; d < dim; ++d)
+        n *= d == normal ? 1 : grid.cells[d] + 1;
+      for (unsigned int k = 0; k < n; ++k)
+        {
+          dealii::Point<dim> place;
+          unsigned int       index = k;
+          for (unsigned int d = 0; d < dim; ++d)
+            {
+              double share = number % 2;
+              if (d != normal)
+                {
+                  share = 1. * (index % (grid.cells[d] + 1)) / grid.cells[d];
+                  index /= grid.cells[d] + 1;
+                }
+              place[d] = (1 - share) * grid.lower_corner[d] +
+                         share * grid.upper_corner[d];
+            }
+          grid.map->vector_value(place, image);
+          for (unsigned int d = 0; d < dim; ++d)
+            {
+              lower[d] = k == 0 ? image[d] : std::min(lower[d], image[d]);
+              upper[d] = k == 0 ? image[d] : std::max(upper[d], image[d]);
+            }
+        }
+      if (!(upper[normal] - lower[normal] > 1e-10 * upper.distance(lower)))
+        return;
+      const std::string  type = !face.value      ? "slip" :
+                                face.is_velocity ? "normal velocity" :
+                                                   "normal displacement";
+      std::ostringstream text;
+      text << "found '" << type << "', which holds "
+           << "xyz"[normal] << ", but Map makes this face reach from "
+           << "xyz"[normal] << " = " << lower[normal] << " to " << upper[normal]
+           << " m; allowed on a face that is no plane across its axis are "
+              "free, fixed, displacement, velocity, traction";
+      throw InputError("Boundary conditions/" + face.name + "/Type",
+                       text.str());
+    }
+
+    /**
+     * Whether a face is to move along its normal: looks at some instants of
+     * the run, on a coarse lattice of the face.
+     */
+    template <int dim>
+    bool
+    moves_along_normal(const Scene<dim> &scene, const unsigned int number)
+    {
+      const auto        &face   = scene.faces[number];
+      const unsigned int normal = number / 2;
+      if (!face.value || !face.constrained[normal])
+        return false;
+      const unsigned int component = face.value->n_components == 1 ? 0 : normal;
+      const unsigned int n_times = 16, n_places = dim == 2 ? 3 : 9;
+      for (unsigned int k = 0; k < n_places; ++k)
+        {
+          dealii::Point<dim> place;
+          unsigned int       index = k;
+          for (unsigned int d = 0; d < dim; ++d)
+            {
+              const double share = d == normal ? number % 2 : 0.5 * (index % 3);
+              if (d != normal)
+                index /= 3;
+              place[d] = (1 - share) * scene.grid.lower_corner[d] +
+                         share * scene.grid.upper_corner[d];
+            }
+          face.value->set_time(0);
+          const double start =
+            face.is_velocity ? 0. : face.value->value(place, component);
+          for (unsigned int i = 1; i <= n_times; ++i)
+            {
+              face.value->set_time(scene.time.end * i / n_times);
+              if (face.value->value(place, component) != start)
+                return true;
+            }
+        }
+      return false;
+    }
   } // namespace
+
+  template <int dim>
+  void
+  warn_of_faces(Scene<dim> &scene)
+  {
+    if (scene.grid.method == GridMethod::lagrangian)
+      return;
+    for (unsigned int f = 0; f < 2 * dim; ++f)
+      if (!scene.faces[f].moves_grid && moves_along_normal(scene, f))
+        scene.warnings.push_back(
+          "face '" + scene.faces[f].name +
+          "' is to move, but not the grid with it: the face holds the nodes of "
+          "the cells at it as long as material is there, and nothing once the "
+          "material has left them; see 'Moves the grid'");
+  }
 
   void
   check_law(const Material    &material,
@@ -91,6 +199,14 @@ namespace impm
                              "found 'BFGS'" + law + "is Newton");
         }
 
+    if (scene.grid.map)
+      for (unsigned int f = 0; f < 2 * dim; ++f)
+        {
+          const auto &held = scene.faces[f].constrained;
+          if (std::count(held.begin(), held.end(), true) == 1)
+            check_mapped_face(scene.grid, scene.faces[f], f);
+        }
+
     unsigned int movers = 0;
     for (unsigned int f = 0; f < 2 * dim; ++f)
       if (scene.faces[f].moves_grid && ++movers > 1)
@@ -157,4 +273,8 @@ namespace impm
   check_scene(const Scene<2> &);
   template void
   check_scene(const Scene<3> &);
+  template void
+  warn_of_faces(Scene<2> &);
+  template void
+  warn_of_faces(Scene<3> &);
 } // namespace impm

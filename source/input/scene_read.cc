@@ -138,15 +138,18 @@ namespace impm
       return result;
     }
 
+    using NamedMaterials =
+      std::map<std::string, std::shared_ptr<const Material>>;
+
     template <int dim>
     BodySpec<dim>
-    read_body(const ParameterHandler                                 &prm,
-              const std::string                                      &name,
-              const NamedShapes<dim>                                 &shapes,
-              const std::map<std::string, std::shared_ptr<Material>> &materials,
-              const bool                                              inertia,
-              const bool       lagrangian,
-              const Constants &constants)
+    read_body(const ParameterHandler &prm,
+              const std::string      &name,
+              const NamedShapes<dim> &shapes,
+              const NamedMaterials   &materials,
+              const bool              inertia,
+              const bool              lagrangian,
+              const Constants        &constants)
     {
       const auto pick = [&](const auto &choices, const std::string &entry) {
         const auto it = choices.find(prm.get(entry));
@@ -331,19 +334,33 @@ namespace impm
 
     const bool lagrangian = scene.grid.method == GridMethod::lagrangian;
 
-    std::map<std::string, std::shared_ptr<Material>> materials;
+    // Points carry the history of the laws that some body has, not of others.
+    std::set<std::string> used;
+    in_section(prm, "Bodies", [&]() {
+      for (const auto &name : split_names(prm.get("Names")))
+        in_section(prm, name, [&]() {
+          if (prm.get("Kind") != "rigid")
+            used.insert(prm.get("Material"));
+        });
+    });
+    scene.history.emplace(scene.geometry);
+    NamedMaterials materials;
     in_section(prm, "Materials", [&]() {
       for (const auto &name : split_names(prm.get("Names")))
         in_section(prm, name, [&]() {
+          MaterialSpec spec{prm.get_double("Density"),
+                            prm.get_bool("F-bar"),
+                            read_specific_heat(prm)};
+          if (spec.specific_heat > 0)
+            spec.initial_temperature = prm.get_double("Initial temperature");
+          PointLayout unused(scene.geometry);
           for (const auto &entry : material_list())
             if (entry.name == prm.get("Law"))
-              materials[name] = entry.create(prm);
-          materials[name]->average_volume = prm.get_bool("F-bar");
+              materials[name] =
+                entry.create(prm,
+                             spec,
+                             used.count(name) ? *scene.history : unused);
           check_law(*materials[name], prm.get("Law"), scene.geometry);
-          materials[name]->specific_heat = read_specific_heat(prm);
-          if (materials[name]->specific_heat > 0)
-            materials[name]->initial_temperature =
-              prm.get_double("Initial temperature");
         });
     });
     in_section(prm, "Time", [&]() { scene.time = read_time(prm, lagrangian); });
@@ -395,6 +412,7 @@ namespace impm
     if (shows_fringes(scene))
       scene.output.fringe_number = prm.get_double({"Output"}, "Fringe number");
     check_scene(scene);
+    warn_of_faces(scene);
     if (scene.time.integrator == "theta" && scene.time.theta == 0)
       scene.warnings.push_back(
         "with Theta = 0 steps are explicit, so that the sections Solver and "

@@ -2,8 +2,6 @@
 
 #include <impm/materials/elastic_constants.h>
 
-#include <cmath>
-
 namespace impm
 {
   namespace
@@ -102,12 +100,5 @@ namespace impm
              from_parameters(prm) :
              from_moduli(prm.get_double("Shear modulus"),
                          prm.get_double("Bulk modulus"));
-  }
-
-
-  double
-  ElasticConstants::wave_speed(const double density) const
-  {
-    return std::sqrt((bulk + 4. / 3. * shear) / density);
   }
 } // namespace impm

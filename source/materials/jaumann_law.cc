@@ -6,25 +6,24 @@
 namespace impm
 {
   bool
-  JaumannLaw::evaluate(const Deformation &deformation,
-                       const double      *history,
-                       double            *trial_history,
-                       const bool         with_tangent,
-                       Response          &response) const
+  JaumannLaw::evaluate_point(const Step &step,
+                             const bool  with_tangent,
+                             Response   &response) const
   {
-    const double J = dealii::determinant(deformation.total);
+    const double J = dealii::determinant(step.total);
     MidpointRate rate;
-    if (!(J > 0) || !(dealii::determinant(deformation.increment) > 0) ||
-        !rate.measure(deformation.increment))
+    if (!(J > 0) || !(dealii::determinant(step.increment) > 0) ||
+        !rate.measure(step.increment))
       return false;
 
     // half of the strain before the rotation, half behind it
     const auto                 half   = 0.5 * elastic_stress(rate.strain);
-    const dealii::Tensor<2, 3> before = load_stress(history) + half;
+    const dealii::Tensor<2, 3> before = load_stress(step.history) + half;
     const auto to_end = before * dealii::transpose(rate.rotation);
     const auto end =
-      return_stress(dealii::symmetrize(rate.rotation * to_end) + half, history);
-    store(end, trial_history);
+      return_stress(dealii::symmetrize(rate.rotation * to_end) + half,
+                    step.history);
+    store(end, step.trial_history);
     response.kirchhoff_stress = J * end.stress;
     response.potential        = 0;
     if (with_tangent)
@@ -35,7 +34,7 @@ namespace impm
             L[k][l] = 1;
             dealii::SymmetricTensor<2, 3> strain_change;
             rate.differentiate(L,
-                               deformation.increment,
+                               step.increment,
                                strain_change,
                                rotation_change);
             const auto half_change = 0.5 * elastic_stress(strain_change);

@@ -5,24 +5,23 @@
 namespace impm
 {
   bool
-  LinearLaw::evaluate(const Deformation &deformation,
-                      const double      *history,
-                      double            *trial_history,
-                      const bool         with_tangent,
-                      Response          &response) const
+  LinearLaw::evaluate_point(const Step &step,
+                            const bool  with_tangent,
+                            Response   &response) const
   {
-    const double J      = dealii::determinant(deformation.total);
-    const double change = dealii::determinant(deformation.increment);
+    const double J      = dealii::determinant(step.total);
+    const double change = dealii::determinant(step.increment);
     if (!(J > 0) || !(change > 0))
       return false;
     const double volume = J / change; // at t_n
 
     const auto unit = dealii::unit_symmetric_tensor<3>();
     const dealii::SymmetricTensor<2, 3> strain =
-      dealii::symmetrize(deformation.increment) - unit;
+      dealii::symmetrize(step.increment) - unit;
     const auto end =
-      return_stress(load_stress(history) + elastic_stress(strain), history);
-    store(end, trial_history);
+      return_stress(load_stress(step.history) + elastic_stress(strain),
+                    step.history);
+    store(end, step.trial_history);
 
     response.kirchhoff_stress = volume * end.stress;
     response.potential =

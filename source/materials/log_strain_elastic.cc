@@ -14,9 +14,9 @@ namespace impm
   }
 
 
-  LogStrainElastic::LogStrainElastic(const HenckyElasticity &elasticity,
-                                     const double            density)
-    : Material(density)
+  LogStrainElastic::LogStrainElastic(const MaterialSpec     &spec,
+                                     const HenckyElasticity &elasticity)
+    : PointwiseLaw(spec, elasticity.young, elasticity.longitudinal_modulus())
     , elasticity(elasticity)
   {}
 
@@ -29,37 +29,26 @@ namespace impm
   }
 
 
-  std::unique_ptr<Material>
-  LogStrainElastic::create(dealii::ParameterHandler &prm)
+  std::unique_ptr<const Material>
+  LogStrainElastic::create(dealii::ParameterHandler &prm,
+                           const MaterialSpec       &spec,
+                           PointLayout &)
   {
     return std::make_unique<LogStrainElastic>(
-      HenckyElasticity::from_parameters(prm), prm.get_double("Density"));
+      spec, HenckyElasticity::from_parameters(prm));
   }
 
 
-  void
-  LogStrainElastic::declare_history(PointLayout &)
-  {}
-
-
-  void
-  LogStrainElastic::initialize_history(double *) const
-  {}
-
-
   bool
-  LogStrainElastic::evaluate(const Deformation &deformation,
-                             const double *,
-                             double *,
-                             const bool with_tangent,
-                             Response  &response) const
+  LogStrainElastic::evaluate_point(const Step &step,
+                                   const bool  with_tangent,
+                                   Response   &response) const
   {
     // b does not tell a body from its mirror image, J does
     LogStrain::PrincipalStrains principal;
-    if (!(dealii::determinant(deformation.total) > 0.) ||
-        !LogStrain::decompose(dealii::Physics::Elasticity::Kinematics::b(
-                                deformation.total),
-                              principal))
+    if (!(dealii::determinant(step.total) > 0.) ||
+        !LogStrain::decompose(
+          dealii::Physics::Elasticity::Kinematics::b(step.total), principal))
       return false;
 
     const auto stress         = elasticity.stress(principal.strain);
@@ -84,19 +73,5 @@ namespace impm
         elasticity.energy(principal.strain) :
         std::numeric_limits<double>::quiet_NaN();
     return result;
-  }
-
-
-  double
-  LogStrainElastic::stiffness() const
-  {
-    return elasticity.young;
-  }
-
-
-  double
-  LogStrainElastic::wave_speed() const
-  {
-    return elasticity.wave_speed(density);
   }
 } // namespace impm

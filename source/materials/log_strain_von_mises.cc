@@ -9,14 +9,20 @@
 
 namespace impm
 {
-  LogStrainVonMises::LogStrainVonMises(const HenckyElasticity &elasticity,
-                                       const double            density,
+  LogStrainVonMises::LogStrainVonMises(const MaterialSpec     &spec,
+                                       PointLayout            &history,
+                                       const HenckyElasticity &elasticity,
                                        const double            yield_stress,
                                        const double            hardening)
-    : Material(density)
+    : PointwiseLaw(spec, elasticity.young, elasticity.longitudinal_modulus())
     , elasticity(elasticity)
     , yield_stress(yield_stress)
     , hardening(hardening)
+    , storage(history.geometry)
+    , elastic_offset(history.add("elastic_left_cauchy_green",
+                                 PointLayout::Kind::symmetric_tensor))
+    , plastic_offset(
+        history.add("equivalent_plastic_strain", PointLayout::Kind::scalar))
   {}
 
 
@@ -37,59 +43,48 @@ namespace impm
   }
 
 
-  std::unique_ptr<Material>
-  LogStrainVonMises::create(dealii::ParameterHandler &prm)
+  std::unique_ptr<const Material>
+  LogStrainVonMises::create(dealii::ParameterHandler &prm,
+                            const MaterialSpec       &spec,
+                            PointLayout              &history)
   {
     return std::make_unique<LogStrainVonMises>(
+      spec,
+      history,
       HenckyElasticity::from_parameters(prm),
-      prm.get_double("Density"),
       prm.get_double("Yield stress"),
       prm.get_double("Hardening modulus"));
   }
 
 
   void
-  LogStrainVonMises::declare_history(PointLayout &history_layout)
-  {
-    elastic_offset = history_layout.add("elastic_left_cauchy_green",
-                                        PointLayout::Kind::symmetric_tensor);
-    plastic_offset = history_layout.add("equivalent_plastic_strain",
-                                        PointLayout::Kind::scalar);
-    layout.emplace(history_layout.geometry);
-  }
-
-
-  void
   LogStrainVonMises::initialize_history(double *history) const
   {
-    layout->store_symmetric(dealii::unit_symmetric_tensor<3>(),
+    storage.store_symmetric(dealii::unit_symmetric_tensor<3>(),
                             history + elastic_offset);
     history[plastic_offset] = 0.;
   }
 
 
   bool
-  LogStrainVonMises::evaluate(const Deformation &deformation,
-                              const double      *history,
-                              double            *trial_history,
-                              const bool         with_tangent,
-                              Response          &response) const
+  LogStrainVonMises::evaluate_point(const Step &step,
+                                    const bool  with_tangent,
+                                    Response   &response) const
   {
-    if (!(dealii::determinant(deformation.increment) > 0.) ||
-        !(dealii::determinant(deformation.total) > 0.))
+    if (!(dealii::determinant(step.increment) > 0.) ||
+        !(dealii::determinant(step.total) > 0.))
       return false;
 
     const auto trial =
       dealii::Physics::Transformations::Contravariant::push_forward(
-        layout->load_symmetric(history + elastic_offset),
-        deformation.increment);
+        storage.load_symmetric(step.history + elastic_offset), step.increment);
     LogStrain::PrincipalStrains principal;
     if (!LogStrain::decompose(trial, principal))
       return false;
 
     auto                  stress         = elasticity.stress(principal.strain);
     std::array<double, 3> elastic_strain = principal.strain;
-    double                alpha          = history[plastic_offset];
+    double                alpha          = step.history[plastic_offset];
 
     const double mean =
       (stress.stress[0] + stress.stress[1] + stress.stress[2]) / 3.;
@@ -122,9 +117,9 @@ namespace impm
             stretches_squared[a] = std::exp(2. * elastic_strain[a]);
             stress.stress[a]     = mean + scale * deviator[a];
           }
-        layout->store_symmetric(LogStrain::compose(stretches_squared,
+        storage.store_symmetric(LogStrain::compose(stretches_squared,
                                                    principal),
-                                trial_history + elastic_offset);
+                                step.trial_history + elastic_offset);
 
         // The scale itself changes with the trial strains, through q only.
         if (with_tangent)
@@ -143,8 +138,8 @@ namespace impm
           }
       }
     else
-      layout->store_symmetric(trial, trial_history + elastic_offset);
-    trial_history[plastic_offset] = alpha;
+      storage.store_symmetric(trial, step.trial_history + elastic_offset);
+    step.trial_history[plastic_offset] = alpha;
 
     response.kirchhoff_stress = LogStrain::compose(stress.stress, principal);
     response.potential =
@@ -162,26 +157,12 @@ namespace impm
     Energy                      result;
     LogStrain::PrincipalStrains principal;
     result.stored =
-      LogStrain::decompose(layout->load_symmetric(history + elastic_offset),
+      LogStrain::decompose(storage.load_symmetric(history + elastic_offset),
                            principal) ?
         elasticity.energy(principal.strain) :
         std::numeric_limits<double>::quiet_NaN();
     result.dissipated = plastic_work(history[plastic_offset]);
     return result;
-  }
-
-
-  double
-  LogStrainVonMises::stiffness() const
-  {
-    return elasticity.young;
-  }
-
-
-  double
-  LogStrainVonMises::wave_speed() const
-  {
-    return elasticity.wave_speed(density);
   }
 
 

@@ -20,25 +20,45 @@ namespace impm
   } // namespace
 
 
-  NeoHookean::NeoHookean(const ElasticConstants &constants,
-                         const double            density)
-    : Material(density)
+  template <bool decoupled>
+  NeoHookean<decoupled>::NeoHookean(const MaterialSpec     &spec,
+                                    const ElasticConstants &constants)
+    : PointwiseLaw<NeoHookean>(spec,
+                               constants.young,
+                               constants.longitudinal_modulus())
     , constants(constants)
   {}
 
 
+  template <bool decoupled>
   void
-  NeoHookean::declare_history(PointLayout &)
-  {}
+  NeoHookean<decoupled>::declare_parameters(dealii::ParameterHandler &prm)
+  {
+    if constexpr (decoupled)
+      ElasticConstants::declare_choice(prm);
+    else
+      ElasticConstants::declare_parameters(prm);
+    Material::declare_density(prm);
+  }
 
 
-  void
-  NeoHookean::initialize_history(double *) const
-  {}
+  template <bool decoupled>
+  std::unique_ptr<const Material>
+  NeoHookean<decoupled>::create(dealii::ParameterHandler &prm,
+                                const MaterialSpec       &spec,
+                                PointLayout &)
+  {
+    return std::make_unique<NeoHookean>(spec,
+                                        decoupled ?
+                                          ElasticConstants::from_choice(prm) :
+                                          ElasticConstants::from_parameters(
+                                            prm));
+  }
 
 
+  template <bool decoupled>
   bool
-  NeoHookean::measure(const dealii::Tensor<2, 3> &F, Strain &strain)
+  NeoHookean<decoupled>::measure(const dealii::Tensor<2, 3> &F, Strain &strain)
   {
     const double J = dealii::determinant(F);
     if (!(J > 0.))
@@ -63,135 +83,79 @@ namespace impm
   }
 
 
-  bool
-  NeoHookean::evaluate(const Deformation &deformation,
-                       const double *,
-                       double *,
-                       const bool with_tangent,
-                       Response  &response) const
-  {
-    Strain strain;
-    if (!measure(deformation.total, strain))
-      return false;
-    response.potential = potential(strain);
-    respond(strain, with_tangent, response);
-    return std::isfinite(response.potential);
-  }
-
-
-  Material::Energy
-  NeoHookean::energy(const dealii::Tensor<2, 3> &deformation_gradient,
-                     const double *) const
-  {
-    Energy result;
-    Strain strain;
-    result.stored = measure(deformation_gradient, strain) ?
-                      potential(strain) :
-                      std::numeric_limits<double>::quiet_NaN();
-    return result;
-  }
-
-
+  template <bool decoupled>
   double
-  NeoHookean::stiffness() const
+  NeoHookean<decoupled>::potential(const Strain &strain) const
   {
-    return constants.young;
-  }
-
-
-  double
-  NeoHookean::wave_speed() const
-  {
-    return constants.wave_speed(density);
-  }
-
-
-  void
-  CoupledNeoHookean::declare_parameters(dealii::ParameterHandler &prm)
-  {
-    ElasticConstants::declare_parameters(prm);
-    declare_density(prm);
-  }
-
-
-  std::unique_ptr<Material>
-  CoupledNeoHookean::create(dealii::ParameterHandler &prm)
-  {
-    return std::make_unique<CoupledNeoHookean>(
-      ElasticConstants::from_parameters(prm), prm.get_double("Density"));
-  }
-
-
-  double
-  CoupledNeoHookean::potential(const Strain &strain) const
-  {
-    return 0.5 * constants.shear *
-             (dealii::trace(strain.b_minus_1) - 2. * strain.log_J) +
-           0.5 * constants.lame() * strain.log_J * strain.log_J;
-  }
-
-
-  void
-  CoupledNeoHookean::respond(const Strain &strain,
-                             const bool    with_tangent,
-                             Response     &response) const
-  {
-    const double pressure     = constants.lame() * strain.log_J;
-    response.kirchhoff_stress = constants.shear * strain.b_minus_1 +
-                                pressure * dealii::unit_symmetric_tensor<3>();
-    if (with_tangent)
-      response.tangent =
-        isotropic_tensor(constants.lame(), 2. * (constants.shear - pressure));
-  }
-
-
-  void
-  DecoupledNeoHookean::declare_parameters(dealii::ParameterHandler &prm)
-  {
-    ElasticConstants::declare_choice(prm);
-    declare_density(prm);
-  }
-
-
-  std::unique_ptr<Material>
-  DecoupledNeoHookean::create(dealii::ParameterHandler &prm)
-  {
-    return std::make_unique<DecoupledNeoHookean>(
-      ElasticConstants::from_choice(prm), prm.get_double("Density"));
-  }
-
-
-  double
-  DecoupledNeoHookean::potential(const Strain &strain) const
-  {
+    const double trace = dealii::trace(strain.b_minus_1);
+    if (!decoupled)
+      return 0.5 * constants.shear * (trace - 2. * strain.log_J) +
+             0.5 * constants.lame() * strain.log_J * strain.log_J;
     // J^(-2/3) - 1
     const double shrink = std::expm1(-2. / 3. * strain.log_J);
-    const double trace  = dealii::trace(strain.b_minus_1);
     return 0.5 * constants.shear * (3. * shrink + trace + shrink * trace) +
            0.5 * constants.bulk * strain.log_J * strain.log_J;
   }
 
 
-  void
-  DecoupledNeoHookean::respond(const Strain &strain,
-                               const bool    with_tangent,
-                               Response     &response) const
+  template <bool decoupled>
+  bool
+  NeoHookean<decoupled>::evaluate_point(const Material::Step &step,
+                                        const bool            with_tangent,
+                                        Material::Response   &response) const
   {
-    const auto   unit     = dealii::unit_symmetric_tensor<3>();
-    const double shear    = constants.shear * std::exp(-2. / 3. * strain.log_J);
-    const double pressure = constants.bulk * strain.log_J;
-    const auto   deviator = shear * dealii::deviator(strain.b_minus_1);
-
-    response.kirchhoff_stress = deviator + pressure * unit;
-    if (with_tangent)
+    Strain strain;
+    if (!measure(step.total, strain))
+      return false;
+    response.potential = potential(strain);
+    const auto   unit  = dealii::unit_symmetric_tensor<3>();
+    const double pressure =
+      (decoupled ? constants.bulk : constants.lame()) * strain.log_J;
+    if constexpr (decoupled)
       {
-        // eq. 21 times J, where the mu of 2 mu [...] is G tr(b) / (3 J^(2/3))
-        const double mu  = shear * (1. + dealii::trace(strain.b_minus_1) / 3.);
-        response.tangent = isotropic_tensor(constants.bulk - 2. / 3. * mu,
-                                            2. * (mu - pressure)) -
-                           2. / 3. *
-                             (dealii::outer_product(deviator, unit) +
-                              dealii::outer_product(unit, deviator));
+        const double shear =
+          constants.shear * std::exp(-2. / 3. * strain.log_J);
+        const auto deviator       = shear * dealii::deviator(strain.b_minus_1);
+        response.kirchhoff_stress = deviator + pressure * unit;
+        if (with_tangent)
+          {
+            // eq. 21 times J, where the mu of 2 mu [...] is
+            // G tr(b) / (3 J^(2/3))
+            const double mu =
+              shear * (1. + dealii::trace(strain.b_minus_1) / 3.);
+            response.tangent = isotropic_tensor(constants.bulk - 2. / 3. * mu,
+                                                2. * (mu - pressure)) -
+                               2. / 3. *
+                                 (dealii::outer_product(deviator, unit) +
+                                  dealii::outer_product(unit, deviator));
+          }
       }
+    else
+      {
+        response.kirchhoff_stress =
+          constants.shear * strain.b_minus_1 + pressure * unit;
+        if (with_tangent)
+          response.tangent =
+            isotropic_tensor(constants.lame(),
+                             2. * (constants.shear - pressure));
+      }
+    return std::isfinite(response.potential);
   }
+
+
+  template <bool decoupled>
+  Material::Energy
+  NeoHookean<decoupled>::energy(const dealii::Tensor<2, 3> &F,
+                                const double *) const
+  {
+    Material::Energy result;
+    Strain           strain;
+    result.stored = measure(F, strain) ?
+                      potential(strain) :
+                      std::numeric_limits<double>::quiet_NaN();
+    return result;
+  }
+
+  template class NeoHookean<false>;
+  template class NeoHookean<true>;
 } // namespace impm

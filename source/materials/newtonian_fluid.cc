@@ -9,14 +9,20 @@
 
 namespace impm
 {
-  NewtonianFluid::NewtonianFluid(const double bulk,
-                                 const double viscosity,
-                                 const double second_viscosity,
-                                 const double density)
-    : Material(density)
+  // K is what a step resists with whatever its length.
+  NewtonianFluid::NewtonianFluid(const MaterialSpec &spec,
+                                 PointLayout        &history,
+                                 const double        bulk,
+                                 const double        viscosity,
+                                 const double        second_viscosity)
+    : PointwiseLaw(spec, bulk, bulk)
     , bulk(bulk)
     , viscosity(viscosity)
     , second_viscosity(second_viscosity)
+    , storage(history.geometry)
+    , stress_offset(
+        history.add("viscous_stress", PointLayout::Kind::symmetric_tensor))
+    , work_offset(history.add("viscous_work", PointLayout::Kind::scalar))
   {}
 
 
@@ -41,8 +47,10 @@ namespace impm
   }
 
 
-  std::unique_ptr<Material>
-  NewtonianFluid::create(dealii::ParameterHandler &prm)
+  std::unique_ptr<const Material>
+  NewtonianFluid::create(dealii::ParameterHandler &prm,
+                         const MaterialSpec       &spec,
+                         PointLayout              &history)
   {
     const double viscosity = prm.get_double("Viscosity"),
                  second    = prm.get_double("Second viscosity");
@@ -51,27 +59,15 @@ namespace impm
                        "found '" + prm.get("Second viscosity") +
                          "', allowed is at least -2/3 of 'Viscosity' = " +
                          prm.get("Viscosity"));
-    return std::make_unique<NewtonianFluid>(prm.get_double("Bulk modulus"),
-                                            viscosity,
-                                            second,
-                                            prm.get_double("Density"));
-  }
-
-
-  void
-  NewtonianFluid::declare_history(PointLayout &history_layout)
-  {
-    stress_offset =
-      history_layout.add("viscous_stress", PointLayout::Kind::symmetric_tensor);
-    work_offset = history_layout.add("viscous_work", PointLayout::Kind::scalar);
-    layout.emplace(history_layout.geometry);
+    return std::make_unique<NewtonianFluid>(
+      spec, history, prm.get_double("Bulk modulus"), viscosity, second);
   }
 
 
   void
   NewtonianFluid::initialize_history(double *history) const
   {
-    layout->store_symmetric({}, history + stress_offset);
+    storage.store_symmetric({}, history + stress_offset);
     history[work_offset] = 0;
   }
 
@@ -86,28 +82,26 @@ namespace impm
 
 
   bool
-  NewtonianFluid::evaluate(const Deformation &deformation,
-                           const double      *history,
-                           double            *trial_history,
-                           const bool         with_tangent,
-                           Response          &response) const
+  NewtonianFluid::evaluate_point(const Step &step,
+                                 const bool  with_tangent,
+                                 Response   &response) const
   {
-    const double J  = dealii::determinant(deformation.total);
-    const double dt = deformation.dt;
+    const double J  = dealii::determinant(step.total);
+    const double dt = step.dt;
     MidpointRate rate;
-    if (!(J > 0) || !(dealii::determinant(deformation.increment) > 0) ||
-        !rate.measure(deformation.increment))
+    if (!(J > 0) || !(dealii::determinant(step.increment) > 0) ||
+        !rate.measure(step.increment))
       return false;
 
-    auto   viscous = layout->load_symmetric(history + stress_offset);
-    double work    = history[work_offset];
+    auto   viscous = storage.load_symmetric(step.history + stress_offset);
+    double work    = step.history[work_offset];
     if (dt > 0)
       {
         viscous = viscous_stress(rate.strain / dt);
         work += J * (viscous * rate.strain);
       }
-    layout->store_symmetric(viscous, trial_history + stress_offset);
-    trial_history[work_offset] = work;
+    storage.store_symmetric(viscous, step.trial_history + stress_offset);
+    step.trial_history[work_offset] = work;
 
     // J p = K (1 - J)
     const auto unit           = dealii::unit_symmetric_tensor<3>();
@@ -124,7 +118,7 @@ namespace impm
                 L[k][l] = 1;
                 dealii::SymmetricTensor<2, 3> strain_change;
                 rate.differentiate(L,
-                                   deformation.increment,
+                                   step.increment,
                                    strain_change,
                                    rotation_change);
                 change = J * viscous_stress(strain_change / dt);
@@ -148,19 +142,5 @@ namespace impm
     result.stored     = bulk * (change - std::log1p(change));
     result.dissipated = history[work_offset];
     return result;
-  }
-
-
-  double
-  NewtonianFluid::stiffness() const
-  {
-    return bulk;
-  }
-
-
-  double
-  NewtonianFluid::wave_speed() const
-  {
-    return std::sqrt(bulk / density);
   }
 } // namespace impm

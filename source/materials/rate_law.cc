@@ -5,12 +5,19 @@
 
 namespace impm
 {
-  RateLaw::RateLaw(const ElasticConstants &constants,
-                   const double            density,
+  RateLaw::RateLaw(const MaterialSpec     &spec,
+                   PointLayout            &history,
+                   const ElasticConstants &constants,
                    const Hardening        &hardening)
-    : Material(density)
+    : Material(spec, constants.young, constants.longitudinal_modulus())
     , constants(constants)
     , hardening(hardening)
+    , storage(history.geometry)
+    , stress_offset(
+        history.add("cauchy_stress", PointLayout::Kind::symmetric_tensor))
+    , plastic_offset(hardening ? history.add("equivalent_plastic_strain",
+                                             PointLayout::Kind::scalar) :
+                                 0)
   {}
 
 
@@ -46,18 +53,6 @@ namespace impm
 
 
   void
-  RateLaw::declare_history(PointLayout &history_layout)
-  {
-    stress_offset =
-      history_layout.add("cauchy_stress", PointLayout::Kind::symmetric_tensor);
-    if (hardening)
-      plastic_offset = history_layout.add("equivalent_plastic_strain",
-                                          PointLayout::Kind::scalar);
-    layout.emplace(history_layout.geometry);
-  }
-
-
-  void
   RateLaw::initialize_history(double *history) const
   {
     store(Return(), history);
@@ -67,7 +62,7 @@ namespace impm
   void
   RateLaw::store(const Return &end, double *history) const
   {
-    layout->store_symmetric(end.stress, history + stress_offset);
+    storage.store_symmetric(end.stress, history + stress_offset);
     if (hardening)
       history[plastic_offset] = end.plastic_strain;
   }
@@ -120,19 +115,5 @@ namespace impm
     if (hardening)
       result.dissipated = plastic_work(history[plastic_offset]);
     return result;
-  }
-
-
-  double
-  RateLaw::stiffness() const
-  {
-    return constants.young;
-  }
-
-
-  double
-  RateLaw::wave_speed() const
-  {
-    return constants.wave_speed(density);
   }
 } // namespace impm

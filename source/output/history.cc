@@ -105,6 +105,7 @@ namespace impm
     if (scene.geometry != GeometryKind::axisymmetric)
       for (unsigned int d = dim == 2 ? 2 : 0; d < 3; ++d)
         names.push_back(std::string("angular_momentum_") + "xyz"[d]);
+    names.push_back("stabilization_work");
     return names;
   }
 
@@ -194,7 +195,8 @@ namespace impm
 
   template <int dim>
   void
-  History<dim>::take_reactions(const StepProblem<dim> &problem)
+  History<dim>::take_reactions(const StepProblem<dim> &problem,
+                               const Vector           &forces)
   {
     for (unsigned int r = 0; r < reactions.size(); ++r)
       {
@@ -206,9 +208,7 @@ namespace impm
         // the opposite.
         reactions[r] =
           -spec.factor / std::sqrt(norm) *
-          problem.constraints.sum_over(spec.on,
-                                       problem.balance.constraint_forces(),
-                                       spec.direction);
+          problem.constraints.sum_over(spec.on, forces, spec.direction);
       }
   }
 
@@ -342,6 +342,7 @@ namespace impm
     if (scene.geometry != GeometryKind::axisymmetric)
       for (unsigned int d = dim == 2 ? 2 : 0; d < 3; ++d)
         add(totals.angular_momentum[d]);
+    add(report.stabilization_work);
 
     file << std::setprecision(12);
     for (unsigned int i = 0; i < row.size(); ++i)

@@ -42,6 +42,7 @@ namespace impm
       json["wall_seconds_by_phase"][name] = seconds;
     json["peak_memory_kilobytes"] = peak;
     json["wall_seconds"]          = wall_seconds;
+    json["warnings"]              = warnings;
     json["errors"]                = nlohmann::ordered_json::array();
     // Numbers that are not finite become null.
     for (const auto &error : errors)

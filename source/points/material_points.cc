@@ -81,18 +81,6 @@ namespace impm
 
   namespace
   {
-    /** What the laws of the scene keep at each point, shared by name. */
-    template <int dim>
-    PointLayout
-    history_of(const Scene<dim> &scene)
-    {
-      PointLayout history(scene.geometry);
-      for (const auto &body : scene.bodies)
-        if (!body.rigid)
-          body.material->declare_history(history);
-      return history;
-    }
-
     unsigned int
     offset_or_zero(const PointLayout &layout, const std::string &name)
     {
@@ -151,8 +139,7 @@ namespace impm
       layout.add(traction_field(traction), Kind::scalar);
 
     // The history comes last, in one block.
-    const PointLayout history = history_of(scene);
-    for (const auto &field : history.fields())
+    for (const auto &field : scene.history->fields())
       layout.add(field.name, field.kind);
     return layout;
   }
@@ -163,13 +150,13 @@ namespace impm
     : layout(choose_layout(scene))
     , sorted(grid, layout.size())
     , offset_deformation(layout.offset("deformation_gradient"))
-    , offset_history(layout.size() - history_of(scene).size())
+    , offset_history(layout.size() - scene.history->size())
     , offset_velocity(offset_or_zero(layout, "velocity"))
     , offset_acceleration(offset_or_zero(layout, "acceleration"))
     , offset_affine(offset_or_zero(layout, "velocity_gradient_x"))
     , offset_stress(offset_or_zero(layout, "stress"))
     , offset_initial_position(offset_or_zero(layout, "initial_position"))
-    , history_layout(history_of(scene))
+    , history_layout(*scene.history)
     , communicator(grid.communicator)
   {
     Tensor<2, 3> identity;

@@ -52,18 +52,17 @@ namespace impm
   SymmetricTensor<2, 3>
   kirchhoff_stress(const MaterialPoints<dim> &points, const unsigned int point)
   {
-    Material::Deformation deformation;
-    deformation.increment = unit_symmetric_tensor<3>();
-    deformation.total     = deformation_gradient(points, point);
-    deformation.dt        = 0;
-    Material::Response  response;
+    const Tensor<2, 3>  unit = unit_symmetric_tensor<3>();
     std::vector<double> unused(points.history_size());
-    points.material(point).evaluate(deformation,
-                                    points.fields(point) +
-                                      points.offset_history,
-                                    unused.data(),
-                                    false,
-                                    response);
+    Material::Response  response;
+    points.material(point).evaluate_one({unit,
+                                         deformation_gradient(points, point),
+                                         0.,
+                                         points.fields(point) +
+                                           points.offset_history,
+                                         unused.data()},
+                                        false,
+                                        response);
     return response.kirchhoff_stress;
   }
 

@@ -1,6 +1,7 @@
 #include <impm/run/motion_limits.h>
 
 #include <functional>
+#include <limits>
 #include <sstream>
 
 namespace impm
@@ -50,17 +51,21 @@ namespace impm
       unsigned int p = 0;
       for (const auto &particle : points.sorted.particles)
         {
-          const auto x = particle.get_location() + motion[p++];
+          const auto x    = particle.get_location() + motion[p++];
+          const auto name = [&](const std::string &what) {
+            std::ostringstream text;
+            text << "point " << particle.get_id() << " at "
+                 << particle.get_location() << " would " << what;
+            return text.str();
+          };
+          // The next step divides by the radius.
+          if (points.layout.geometry == GeometryKind::axisymmetric &&
+              outside.empty() && !(x[0] > 0))
+            outside = name("reach the axis");
           for (unsigned int f = 0; f < 2 * dim && outside.empty(); ++f)
             if (f % 2 == 0 ? x[f / 2] < faces[f] : x[f / 2] > faces[f])
-              {
-                std::ostringstream text;
-                text << "point " << particle.get_id() << " at "
-                     << particle.get_location()
-                     << " would leave the domain through its "
-                     << face_names()[f] << " face";
-                outside = text.str();
-              }
+              outside = name("leave the domain through its " + face_names()[f] +
+                             " face");
         }
       for (const auto &text :
            Utilities::MPI::all_gather(points.communicator, outside))
@@ -79,16 +84,16 @@ namespace impm
                    const MaterialPoints<dim> &points,
                    const GridPolicy<dim>     &policy)
   {
-    if (grid.is_lagrangian)
-      return "";
+    const double infinite = std::numeric_limits<double>::infinity();
     // Material that has not reached a face yet does not feel it: a long step
     // could carry it through.
     const double                from = problem.time, to = from + problem.dt;
     std::array<double, 2 * dim> faces;
     for (unsigned int f = 0; f < 2 * dim; ++f)
-      faces[f] = policy.face_position(grid, f, from, to);
+      faces[f] = grid.is_lagrangian ? (f % 2 == 0 ? -infinite : infinite) :
+                                      policy.face_position(grid, f, from, to);
     const auto outside = find_point_outside(problem, increment, points, faces);
-    if (!outside.empty())
+    if (!outside.empty() || grid.is_lagrangian)
       return outside;
     // Nor does it feel material that it has not reached; and between ranks a
     // point is found only where the neighbour can see it.

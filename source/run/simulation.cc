@@ -8,6 +8,8 @@
 #include <impm/run/motion_limits.h>
 #include <impm/run/simulation.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <sstream>
 
@@ -36,6 +38,7 @@ namespace impm
     , history(scene, points, rigid, grid)
     , reference(scene, points, history)
     , console(verbosity, Utilities::MPI::this_mpi_process(communicator) == 0)
+    , warnings(scene.warnings)
   {}
 
   template <int dim>
@@ -124,12 +127,10 @@ namespace impm
   void
   Simulation<dim>::advance()
   {
-    const double work    = report.external_work;
-    const auto   step    = report.step + 1;
+    const auto step      = report.step + 1;
+    const auto fallbacks = counts.solver_fallbacks;
     report               = StepReport();
     report.step          = step;
-    report.external_work = work;
-    const auto fallbacks = counts.solver_fallbacks;
     adapt();
     for (double dt = control.begin(time, step_unit());;)
       {
@@ -165,10 +166,15 @@ namespace impm
     report.active_cells =
       Utilities::MPI::sum<unsigned int>(problem->populated.cells.size(),
                                         communicator);
-    report.dofs = problem->n_active_dofs;
-    report.external_work += external_work_of_step();
-    history.take_reactions(*problem);
+    report.dofs         = problem->n_active_dofs;
+    const Vector forces = problem->end_forces(result.increment);
+    work.add(*problem, result.increment, forces);
+    report.external_work      = work.done;
+    report.stabilization_work = work.stabilization;
+    history.take_reactions(*problem, forces);
+    watch_faces();
     commit();
+    ++n_steps;
     control.accept();
     report.time         = time;
     report.wall_seconds = wall.wall_time();
@@ -179,22 +185,6 @@ namespace impm
     sums.cuts += report.step_cuts;
     sums.projections += report.projections;
     sums.noise_stops += report.noise_stops;
-  }
-
-  template <int dim>
-  double
-  Simulation<dim>::external_work_of_step() const
-  {
-    const auto   &forces = problem->balance.constraint_forces();
-    const Vector &u      = result.increment;
-    double        work   = 0;
-    for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
-      {
-        if (problem->constraints.is_constrained[i])
-          work += forces.local_element(i) * u.local_element(i);
-        work -= problem->load_at(i) * u.local_element(i);
-      }
-    return Utilities::MPI::sum(work, communicator);
   }
 
   template <int dim>
@@ -228,7 +218,7 @@ namespace impm
     console.finish();
     picture(false);
     write_checkpoint(directory,
-                     {report.step - 1, time, control.step_size(), reason},
+                     {n_steps, time, control.step_size(), reason},
                      grid,
                      points);
   }
@@ -245,7 +235,7 @@ namespace impm
     summary.dim             = dim;
     summary.points          = points.sorted.n_global();
     summary.bytes_per_point = points.bytes_per_point();
-    summary.steps           = report.step;
+    summary.steps           = n_steps;
     summary.time            = time;
     summary.counts          = {{"newton_iterations", sums.newton},
                                {"linear_iterations", sums.linear},
@@ -262,6 +252,7 @@ namespace impm
     summary.figures         = history.last_figures();
     summary.phases       = timer.get_summary_data(TimerOutput::total_wall_time);
     summary.wall_seconds = wall.wall_time();
+    summary.warnings     = warnings.list();
     if (status == "done")
       summary.errors = reference.errors(time, finer_runs);
     summary.write(directory, communicator);
@@ -276,20 +267,46 @@ namespace impm
   void
   Simulation<dim>::warn_of_instability()
   {
-    if (!integrator->has_inertia() || scene.time.theta >= 0.5)
+    if (!integrator->has_inertia())
       return;
     // Of the highest mode of a grid of full cells, eq. 2.4.1.
     const double unit  = cfl_unit();
-    const double limit = unit / std::sqrt(1 - 2 * scene.time.theta);
+    const double limit = integrator->stable_step(2 / unit);
     const double dt =
       scene.time.largest_step * (scene.time.cfl_number > 0 ? unit : 1.);
     if (dt <= 1.001 * limit)
       return;
     std::ostringstream text;
-    text << "warning: time steps of up to " << dt << " s grow without bound "
-         << "where they exceed about " << limit << " s, since theta is below "
-         << "0.5";
-    console.message(text.str());
+    text << "time steps of up to " << dt << " s grow without bound "
+         << "where they exceed about " << limit << " s: the integrator is "
+         << "stable only up to there";
+    warn("instability", text.str());
+  }
+
+  template <int dim>
+  void
+  Simulation<dim>::warn(const std::string &kind, const std::string &text)
+  {
+    if (warnings.add(kind, text, time))
+      console.message("warning: " + text);
+  }
+
+  template <int dim>
+  void
+  Simulation<dim>::watch_faces()
+  {
+    if (std::none_of(scene.faces.begin(),
+                     scene.faces.end(),
+                     [](const auto &face) { return face.value != nullptr; }))
+      return;
+    const auto holds = problem->constraints.faces_that_hold();
+    for (unsigned int f = 0; f < 2 * dim; ++f)
+      if (scene.faces[f].value && face_holds[f] && !holds[f])
+        warn("face " + scene.faces[f].name,
+             "face '" + scene.faces[f].name +
+               "', whose motion is prescribed, has lost its material: it holds "
+               "no node any more");
+    face_holds = holds;
   }
 
   template <int dim>
@@ -355,7 +372,11 @@ namespace impm
             if (scene.output.pictures && (due || last))
               {
                 picture(true);
-                next_picture += scene.output.picture_interval;
+                // A long step may have passed several.
+                if (const double interval = scene.output.picture_interval;
+                    interval > 0)
+                  next_picture =
+                    interval * (std::floor(time / interval * (1 + 1e-9)) + 1);
               }
           }
       }

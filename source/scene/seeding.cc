@@ -152,17 +152,22 @@ namespace impm
               }
       std::vector<double> first(owner.size());
       Utilities::MPI::min(owner, grid.communicator, first);
+      const auto refuse = [&](const unsigned int p, const std::string &why) {
+        std::ostringstream place;
+        place << cloud.positions[p];
+        throw InputError("Bodies/" + body.name + "/File",
+                         "point " + std::to_string(p + 1) + " of '" +
+                           body.point_file + "' at " + place.str() + why);
+      };
       for (unsigned int p = 0; p < owner.size(); ++p)
         {
           if (first[p] == 1e300)
-            {
-              std::ostringstream place;
-              place << cloud.positions[p];
-              throw InputError("Bodies/" + body.name + "/File",
-                               "point " + std::to_string(p + 1) + " of '" +
-                                 body.point_file + "' at " + place.str() +
-                                 " lies outside the grid");
-            }
+            refuse(p, " lies outside the grid");
+          if (!body.rigid &&
+              circumference(scene.geometry, cloud.positions[p]) == 0)
+            refuse(p,
+                   " lies on the axis, where a ring has no volume; allowed is "
+                   "r > 0");
           if (owner[p] != first[p])
             continue;
           Seed<dim> seed;

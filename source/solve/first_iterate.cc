@@ -23,8 +23,8 @@ namespace impm
       if (is_complete || spec.newton_reduction == 1)
         {
           const auto now = direction.evaluate_with_tangent(complete);
-          test.set_first_residual(now.residual);
-          if (is_complete || (now.admissible && test.is_met(now.residual)))
+          test.set_first_residual(system.norms_of(system.residual()));
+          if (is_complete || (now.admissible && test.is_met(now)))
             {
               u = complete;
               return now;
@@ -45,7 +45,7 @@ namespace impm
       system.initialize(right_side);
       linear_solver.vmult_lift(right_side, lift);
       right_side.sadd(-1., -1., residual);
-      test.set_first_residual(right_side.l2_norm() / system.unit_of_residual());
+      test.set_first_residual(system.norms_of(right_side));
       direction.take_tangent(u);
       const auto go = [&]() {
         direction.solve(step, right_side);

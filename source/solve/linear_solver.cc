@@ -165,12 +165,7 @@ namespace impm
     TimerOutput::Scope scope(timer, "direct solver");
     // What has been factorized must stay: a tangent may be solved with again.
     if (!matrix_is_current)
-      {
-        // A quotient of residuals has left the system evaluated elsewhere.
-        if (spec.tangent == TangentKind::difference_quotient)
-          quotient.go_back();
-        assemble();
-      }
+      assemble();
     if (!factors)
       factors = std::make_unique<DirectSolver>(*matrix);
     factors->solve(x, b);

@@ -73,10 +73,11 @@ namespace impm
     for (;;)
       {
         result.residuals.push_back(now.residual);
-        if (test.is_met(now.residual) || now.residual <= now.round_off)
+        const bool stagnates = test.stagnates(now);
+        if (test.is_met(now) || stagnates)
           {
             result.converged        = true;
-            result.stopped_at_noise = !test.allows(now.residual);
+            result.stopped_at_noise = stagnates || !test.allows(now);
             return result;
           }
         if (result.iterations >= spec.newton_iterations)
@@ -114,7 +115,10 @@ namespace impm
           }
         if (length == 0)
           {
+            result.converged = result.stopped_at_noise = test.allows(before);
             result.failure = "the line search found no descent";
+            if (result.converged)
+              result.residuals.push_back(evaluate(u, true).residual);
             return result;
           }
         step *= length;

@@ -9,6 +9,11 @@
 
 #include <Teuchos_ParameterList.hpp>
 
+#include <exception>
+#include <filesystem>
+#include <iostream>
+#include <sstream>
+
 namespace impm
 {
   using namespace dealii;
@@ -162,7 +167,31 @@ namespace impm
     parameters.set("null space: type", "pre-computed");
     parameters.set("null space: dimension", static_cast<int>(modes.size()));
     parameters.set("null space: vectors", all.data());
-    implementation->preconditioner.initialize(trilinos_matrix, parameters);
+    // Where the coarsest matrix is singular, ML says so on the terminal, writes
+    // it to a file and goes on without it; no parameter turns this off.
+    const std::string  file      = "amesos-failure.dat";
+    const bool         was_there = std::filesystem::exists(file);
+    std::ostringstream said;
+    const auto         screen = std::cout.rdbuf(said.rdbuf());
+    std::exception_ptr error;
+    try
+      {
+        implementation->preconditioner.initialize(trilinos_matrix, parameters);
+      }
+    catch (...)
+      {
+        error = std::current_exception();
+      }
+    std::cout.rdbuf(screen);
+    const bool failed = error || said.str().find("failed") != std::string::npos;
+    if (failed && !was_there)
+      {
+        std::error_code none;
+        std::filesystem::remove(file, none);
+      }
+    if (Utilities::MPI::max(failed ? 1 : 0,
+                            trilinos_matrix.get_mpi_communicator()) > 0)
+      throw LinearizationError("the linear system is singular");
   }
 
   void

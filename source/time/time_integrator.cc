@@ -1,5 +1,8 @@
 #include <impm/time/time_integrator.h>
 
+#include <cmath>
+#include <limits>
+
 namespace impm
 {
   namespace
@@ -23,6 +26,12 @@ namespace impm
       force_factor() const override
       {
         return 1;
+      }
+
+      double
+      stable_step(double) const override
+      {
+        return std::numeric_limits<double>::infinity();
       }
 
       void
@@ -72,6 +81,18 @@ namespace impm
       force_factor() const override
       {
         return theta;
+      }
+
+      /**
+       * With d = 1 + theta (omega dt)^2, (x, dt v) is multiplied by a matrix of
+       * determinant 1 / d and trace (d + 1 - (omega dt)^2) / d: the eigenvalue
+       * -1 is passed where (1 - 2 theta) (omega dt)^2 = 4.
+       */
+      double
+      stable_step(const double frequency) const override
+      {
+        return theta >= 0.5 ? std::numeric_limits<double>::infinity() :
+                              2 / (std::sqrt(1 - 2 * theta) * frequency);
       }
 
       void
@@ -141,6 +162,27 @@ namespace impm
       force_factor() const override
       {
         return keeps ? 1 : 2 * beta;
+      }
+
+      /** For the acceleration, whatever the factor is. */
+      bool
+      needs_start_forces() const override
+      {
+        return !keeps;
+      }
+
+      /**
+       * (gamma / 2 - beta) (omega dt)^2 <= 1 (Hughes 1987, section 9.1, without
+       * damping). With forces at both ends, too: a = -f(0) / m is a_end of the
+       * step before wherever mass and forces are still the same, so that the
+       * same matrix multiplies (x, v).
+       */
+      double
+      stable_step(const double frequency) const override
+      {
+        return 2 * beta >= gamma ?
+                 std::numeric_limits<double>::infinity() :
+                 1 / (std::sqrt(gamma / 2 - beta) * frequency);
       }
 
       void

@@ -1,6 +1,7 @@
 #ifndef impm_balance_momentum_balance_h
 #define impm_balance_momentum_balance_h
 
+#include <impm/balance/residual_norm.h>
 #include <impm/balance/terms/term.h>
 #include <impm/balance/velocity_smoothing.h>
 #include <impm/solve/nonlinear_system.h>
@@ -31,19 +32,19 @@ namespace impm
     struct Parts
     {
       Terms  strain_terms, node_terms;
-      double end_weight; ///< w
-      /** Norm of the forces that residuals are measured in (N). */
-      double unit;
-      bool   has_potential;
-      bool   has_rotations; ///< whether a rotation of the body is free
+      double end_weight;   ///< w
+      Vector start_forces; ///< f(0) (N), where w is below one
+      /** What residuals are measured by, and whether beside what acts, too. */
+      const ResidualNorm *norm;
+      bool                minds_forces_at_work;
+      bool                has_potential;
+      bool has_rotations; ///< whether a rotation of the body is free
       /** Of the momentum formulation, or null; and dt v (m), the mass (kg). */
       const VelocitySmoothing<dim> *smoothing = nullptr;
       Vector                        start_increment;
       const Vector                 *mass = nullptr;
     };
 
-    /** Throws ComputationError when a point has no stress at the start.
-     * Collective. */
     MomentumBalance(const Discretization<dim>  &discretization,
                     const StepConstraints<dim> &constraints,
                     Parts                       parts,
@@ -58,10 +59,10 @@ namespace impm
       return free_residual;
     }
 
-    double
-    unit_of_residual() const override
+    std::vector<double>
+    norms_of(const Vector &force) const override
     {
-      return parts.unit;
+      return parts.norm->largest_nearby(force);
     }
 
     bool
@@ -139,19 +140,20 @@ namespace impm
       return discretization.smallest_cell_extent;
     }
 
-    /** What faces and rigid bodies exert (N): the residual before they do. */
+    /** What faces and rigid bodies exert (N), as the integrator weighs it over
+     * the step: the residual before they do. */
     const Vector &
     constraint_forces() const
     {
       return forces;
     }
 
-    /** f(0) (N), where the integrator weighs it or asks for it. */
-    const Vector &
-    start_forces() const
-    {
-      return forces_at_start;
-    }
+    /**
+     * The forces of strain and loads alone, f(u) (N), at the increment where
+     * the balance stands evaluated. Collective.
+     */
+    Vector
+    forces_of_strain(const Vector &u) const;
 
   private:
     /** `strain_src` is what strains, `src` what the nodes do. */
@@ -164,14 +166,18 @@ namespace impm
     void
     assemble_stiffness(SparseMatrix &matrix) const;
 
+    /** Takes apart the residual that `forces` have, which came of `strain
+     * forces` alone before. */
     void
-    gather_start_forces();
+    judge(const Vector              &u,
+          const std::vector<double> &strain_forces,
+          Evaluation                &result) const;
 
     const Discretization<dim>  &discretization;
     const StepConstraints<dim> &constraints;
     const Parts                 parts;
 
-    Vector         forces, free_residual, forces_at_start;
+    Vector         forces, free_residual;
     mutable Vector work, smooth;
     /** A factor of the matrix in the momentum formulation. */
     mutable std::unique_ptr<SparseMatrix> stiffness, spread_mass;

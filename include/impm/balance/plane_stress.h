@@ -16,18 +16,19 @@ namespace impm
     using Matrix = Kinematics<2>::Matrix;
 
     /**
-     * Evaluates the law with the dF_33 that leaves no stress across the plane
-     * and puts it into `deformation`. `start` is F at t_n. The iteration
-     * starts from dF_33 = 1, whatever came before. With a `matrix`, it becomes
-     * the spatial tangent of the plane. Returns false when there is no such
-     * thickness.
+     * Evaluates the law for a step of length dt (s) with the dF_33 that leaves
+     * no stress across the plane and puts it into `increment`. `start` is F at
+     * t_n. The iteration starts from dF_33 = 1, whatever came before. With a
+     * `matrix`, it becomes the spatial tangent of the plane. Returns false
+     * when there is no such thickness.
      */
     bool
     evaluate(const Material             &material,
              const dealii::Tensor<2, 3> &start,
+             double                      dt,
              const double               *history,
              double                     *trial_history,
-             Material::Deformation      &deformation,
+             dealii::Tensor<2, 3>       &increment,
              Material::Response         &response,
              double                     *matrix);
 

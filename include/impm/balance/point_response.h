@@ -6,6 +6,7 @@
 #include <impm/balance/volume_average.h>
 #include <impm/points/material_points.h>
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -84,9 +85,11 @@ namespace impm
       return &end_stresses[point * n_stress];
     }
 
-    /** Sum over the points of the squares of their stresses (N m)^2. */
-    double
-    square_of_stresses() const;
+    /** Adds the squares of the points' stresses (N m)^2, by groups of bodies.
+     */
+    void
+    add_squares_of_stresses(const std::vector<unsigned int> &group_of_body,
+                            std::vector<double>             &squares) const;
 
     const Kinematics<dim> kinematics;
     VolumeAverage<dim>    average;
@@ -94,6 +97,33 @@ namespace impm
     std::vector<double> gradients, stresses;
 
   private:
+    /** Consecutive points of one law, on their way through evaluate(). */
+    struct Batch
+    {
+      static constexpr unsigned int max_size = 8;
+
+      template <typename T>
+      using List = std::array<T, max_size>;
+
+      unsigned int                           first, size;
+      const Material                        *law;
+      List<dealii::Tensor<2, 3>>             increment;
+      List<Material::Response>               response;
+      List<typename Kinematics<dim>::Matrix> spatial; ///< tangents
+    };
+
+    /** Finds law and size of the batch that starts at `first`. */
+    void
+    begin_batch(Batch &batch) const;
+
+    /** Fills in the rest. Returns false when a point has no stress. */
+    bool
+    evaluate_law(Batch &batch, bool with_tangent);
+
+    /** Turns it into stresses and tangents; adds V0 times the potential. */
+    void
+    carry_back(Batch &batch, bool with_tangent, double &potential);
+
     const MaterialPoints<dim> &points;
     std::optional<PlaneStress> plane_stress;
     double                     dt;

@@ -53,16 +53,26 @@ namespace impm
     StepResult
     end_motion(const Vector &u) const;
 
-    /** The mean external force over the step (N) at a local element, with the
-     * sign of an internal one. */
+    /**
+     * What holds a node exerts at the end of the step that has converged at `u`
+     * (N), whatever the integrator weighs: forces of strain less loads, with
+     * held_inertia(). Zero or what is left elsewhere. Collective.
+     */
+    Vector
+    end_forces(const Vector &u) const;
+
+    /**
+     * The mean force (N) that gives a held value, by local index, its motion:
+     * end_motion() takes its velocity for u / dt.
+     */
     double
-    load_at(const unsigned int i) const
+    held_inertia(const Vector &u, const unsigned int i) const
     {
-      const double weight = integrator.force_factor();
-      return loads == nullptr ?
-               0. :
-               weight * loads->at_end.local_element(i) +
-                 (1 - weight) * loads->at_start.local_element(i);
+      return integrator.has_inertia() ?
+               motion.mass.local_element(i) *
+                 (u.local_element(i) / dt - motion.velocity.local_element(i)) /
+                 dt :
+               0.;
     }
 
     const double          time, dt;
@@ -71,34 +81,48 @@ namespace impm
     const std::shared_ptr<const Discretization<dim>> discretization;
     Footprints<dim>                                  footprints;
     const PopulatedCells<dim>                        populated;
-    /** Forces at a strain of one (N), see forces_at_unit_strain(). */
-    const Vector               unit_strain_forces;
-    const StepConstraints<dim> constraints;
-    PointResponse<dim>         response;
-    const NodalMotion          motion;
-    const unsigned int         n_limited_boxes; ///< of all ranks
+    const ResidualNorm                               norm;
+    const StepConstraints<dim>                       constraints;
+    PointResponse<dim>                               response;
+    const NodalMotion                                motion;
+    const unsigned int n_limited_boxes; ///< of all ranks
     /** Neither constrained nor unused, of all ranks. */
     const unsigned int n_active_dofs;
-    unsigned int       n_held_cells = 0;       ///< isolated ones
-    Loads             *loads        = nullptr; ///< one of the terms
-    const std::unique_ptr<const VelocitySmoothing<dim>> smoothing; ///< or null
-    MomentumBalance<dim>                                balance;
+    unsigned int       n_held_cells  = 0;       ///< isolated ones
+    const Loads       *loads         = nullptr; ///< one of the terms
+    const Term        *stabilization = nullptr; ///< another one
     /** What the integrator takes for the acceleration at the start: gathered,
      * or from the forces then (m/s^2). */
-    const Vector start_acceleration;
+    Vector                                              start_acceleration;
+    const std::unique_ptr<const VelocitySmoothing<dim>> smoothing; ///< or null
+    MomentumBalance<dim>                                balance;
 
   private:
+    using Parts = typename MomentumBalance<dim>::Parts;
+
     /** The terms that this scene needs, and no others. */
-    typename MomentumBalance<dim>::Parts
+    Parts
     make_parts(const Scene<dim>          &scene,
                const BackgroundGrid<dim> &grid,
                const MaterialPoints<dim> &points);
 
+    void
+    add_strain_terms(const Scene<dim>          &scene,
+                     const BackgroundGrid<dim> &grid,
+                     const MaterialPoints<dim> &points,
+                     Parts                     &parts);
+
+    /** f(0) and the acceleration that it gives, if they are asked for. */
+    void
+    find_start_forces(Parts &parts);
+
+    void
+    add_node_terms(const Scene<dim>          &scene,
+                   const MaterialPoints<dim> &points,
+                   Parts                     &parts);
+
     unsigned int
     count_active_dofs() const;
-
-    Vector
-    find_start_acceleration() const;
   };
 } // namespace impm
 

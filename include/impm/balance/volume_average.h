@@ -43,10 +43,11 @@ namespace impm
 
     /**
      * Takes the gradients at all points. Returns false when some dJ is not
-     * positive.
+     * positive. What belongs to the tangent stays, here and below, until it
+     * is wanted anew.
      */
     bool
-    measure(const std::vector<double> &gradients);
+    measure(const std::vector<double> &gradients, bool with_tangent);
 
     /** dF_bar from dF. */
     dealii::Tensor<2, 3>

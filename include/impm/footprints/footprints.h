@@ -79,6 +79,29 @@ namespace impm
                  double                    *gradients);
 
     /**
+     * Takes nodes out of the reach of points that would move them but give
+     * them no mass: a point exactly on a face of its cell has slopes at the
+     * nodes across, but no share in them. Where nothing else gives them mass,
+     * it goes without the derivative across the face for this step, as if they
+     * went along with the nodes on the face. For steps with inertia.
+     * Collective.
+     */
+    void
+    release_massless_nodes(const Discretization<dim> &discretization);
+
+    /** Whether an entry has any part in a node of its cell. */
+    bool
+    touches(const unsigned int entry, const unsigned int node) const
+    {
+      if (value(entry)[node] != 0)
+        return true;
+      for (unsigned int d = 0; d < dim; ++d)
+        if (gradient(entry)[dim * node + d] != 0)
+          return true;
+      return false;
+    }
+
+    /**
      * Groups the points for the tangent. `coupled` has, for every point, a
      * number of those that must share a block whatever cells they touch, or
      * is empty.

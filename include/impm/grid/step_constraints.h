@@ -70,11 +70,33 @@ namespace impm
              const Vector              &vector,
              const std::vector<double> &direction) const;
 
+    /** Whether each face holds any node that has material. Collective. */
+    std::array<bool, 2 * dim>
+    faces_that_hold() const;
+
     /** Whether a face or rigid body holds a local element. */
     bool
     is_prescribed(const unsigned int index) const
     {
       return carriers.local_element(index) > 0;
+    }
+
+    static constexpr unsigned int no_carrier = -1;
+
+    /** The face that holds a local element, or the rigid body behind the
+     * faces, or no_carrier. */
+    unsigned int
+    carrier(const unsigned int index) const
+    {
+      return is_prescribed(index) ?
+               static_cast<unsigned int>(carriers.local_element(index)) - 1 :
+               no_carrier;
+    }
+
+    unsigned int
+    n_carriers() const
+    {
+      return 2 * dim + rigid.size();
     }
 
     dealii::AffineConstraints<double> constraints;

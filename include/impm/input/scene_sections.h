@@ -54,6 +54,11 @@ namespace impm
   template <int dim>
   void
   check_scene(const Scene<dim> &scene);
+
+  /** Warns of faces that are to move and will lose their material. */
+  template <int dim>
+  void
+  warn_of_faces(Scene<dim> &scene);
 } // namespace impm
 
 #endif

@@ -45,9 +45,12 @@ namespace impm
       return bulk - 2. / 3. * shear;
     }
 
-    /** Of longitudinal waves (m/s), from the density (kg/m^3). */
+    /** K + 4/3 G (Pa): that of longitudinal waves. */
     double
-    wave_speed(double density) const;
+    longitudinal_modulus() const
+    {
+      return bulk + 4. / 3. * shear;
+    }
 
     const double young; ///< Pa
     const double bulk;  ///< K (Pa)

@@ -1,6 +1,7 @@
 #ifndef impm_materials_jaumann_law_h
 #define impm_materials_jaumann_law_h
 
+#include <impm/materials/pointwise_law.h>
 #include <impm/materials/rate_law.h>
 
 namespace impm
@@ -17,17 +18,15 @@ namespace impm
    * but hypoelastic: there is no energy that the stress derives from, stress
    * oscillates in a large simple shear, and the tangent is not symmetric.
    */
-  class JaumannLaw final : public RateLaw
+  class JaumannLaw final : public PointwiseLaw<JaumannLaw, RateLaw>
   {
   public:
-    using RateLaw::RateLaw;
+    using PointwiseLaw::PointwiseLaw;
 
     bool
-    evaluate(const Deformation &deformation,
-             const double      *history,
-             double            *trial_history,
-             bool               with_tangent,
-             Response          &response) const override;
+    evaluate_point(const Step &step,
+                   bool        with_tangent,
+                   Response   &response) const;
 
     Form
     form() const override

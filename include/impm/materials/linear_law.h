@@ -1,6 +1,7 @@
 #ifndef impm_materials_linear_law_h
 #define impm_materials_linear_law_h
 
+#include <impm/materials/pointwise_law.h>
 #include <impm/materials/rate_law.h>
 
 namespace impm
@@ -19,17 +20,15 @@ namespace impm
    *
    * Over a step sigma derives from W = J_n (psi(sigma) + plastic work).
    */
-  class LinearLaw final : public RateLaw
+  class LinearLaw final : public PointwiseLaw<LinearLaw, RateLaw>
   {
   public:
-    using RateLaw::RateLaw;
+    using PointwiseLaw::PointwiseLaw;
 
     bool
-    evaluate(const Deformation &deformation,
-             const double      *history,
-             double            *trial_history,
-             bool               with_tangent,
-             Response          &response) const override;
+    evaluate_point(const Step &step,
+                   bool        with_tangent,
+                   Response   &response) const;
 
     Form
     form() const override

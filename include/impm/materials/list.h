@@ -23,10 +23,13 @@ namespace impm
     std::function<void(dealii::ParameterHandler &)> declare;
 
     /**
-     * Reads them back. Throws InputError, with the entry's bare name, when
-     * they contradict each other.
+     * Reads them back and makes the law, which adds its fields to the
+     * history. Throws InputError, with the entry's bare name, when they
+     * contradict each other.
      */
-    std::function<std::unique_ptr<Material>(dealii::ParameterHandler &)> create;
+    std::function<std::unique_ptr<const Material>(
+      dealii::ParameterHandler &, const MaterialSpec &, PointLayout &history)>
+      create;
 
     /**
      * Declares the entries that depend on others of this law; `chosen` takes

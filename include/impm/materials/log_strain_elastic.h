@@ -5,7 +5,7 @@
 
 #include <impm/materials/elastic_constants.h>
 #include <impm/materials/log_strain.h>
-#include <impm/materials/material.h>
+#include <impm/materials/pointwise_law.h>
 
 #include <array>
 #include <memory>
@@ -42,39 +42,28 @@ namespace impm
 
 
   /** Hencky's elasticity from the total deformation; keeps no history. */
-  class LogStrainElastic final : public Material
+  class LogStrainElastic final : public PointwiseLaw<LogStrainElastic>
   {
   public:
-    LogStrainElastic(const HenckyElasticity &elasticity, double density);
+    LogStrainElastic(const MaterialSpec     &spec,
+                     const HenckyElasticity &elasticity);
 
     static void
     declare_parameters(dealii::ParameterHandler &prm);
 
-    static std::unique_ptr<Material>
-    create(dealii::ParameterHandler &prm);
-
-    void
-    declare_history(PointLayout &layout) override;
-
-    void
-    initialize_history(double *history) const override;
+    static std::unique_ptr<const Material>
+    create(dealii::ParameterHandler &prm,
+           const MaterialSpec       &spec,
+           PointLayout              &history);
 
     bool
-    evaluate(const Deformation &deformation,
-             const double      *history,
-             double            *trial_history,
-             bool               with_tangent,
-             Response          &response) const override;
+    evaluate_point(const Step &step,
+                   bool        with_tangent,
+                   Response   &response) const;
 
     Energy
     energy(const dealii::Tensor<2, 3> &deformation_gradient,
            const double               *history) const override;
-
-    double
-    stiffness() const override;
-
-    double
-    wave_speed() const override;
 
   private:
     const HenckyElasticity elasticity;

@@ -4,11 +4,9 @@
 #include <deal.II/base/parameter_handler.h>
 
 #include <impm/materials/log_strain_elastic.h>
-#include <impm/materials/material.h>
 
 #include <array>
 #include <memory>
-#include <optional>
 
 namespace impm
 {
@@ -30,46 +28,38 @@ namespace impm
    * History: "elastic_left_cauchy_green" b_e (-) and
    * "equivalent_plastic_strain" alpha (-).
    */
-  class LogStrainVonMises final : public Material
+  class LogStrainVonMises final : public PointwiseLaw<LogStrainVonMises>
   {
   public:
     /**
      * Yield stress sigma_y (Pa, > 0) and slope H >= 0 (Pa) of the yield
      * stress over the equivalent plastic strain.
      */
-    LogStrainVonMises(const HenckyElasticity &elasticity,
-                      double                  density,
+    LogStrainVonMises(const MaterialSpec     &spec,
+                      PointLayout            &history,
+                      const HenckyElasticity &elasticity,
                       double                  yield_stress,
                       double                  hardening);
 
     static void
     declare_parameters(dealii::ParameterHandler &prm);
 
-    static std::unique_ptr<Material>
-    create(dealii::ParameterHandler &prm);
-
-    void
-    declare_history(PointLayout &layout) override;
+    static std::unique_ptr<const Material>
+    create(dealii::ParameterHandler &prm,
+           const MaterialSpec       &spec,
+           PointLayout              &history);
 
     void
     initialize_history(double *history) const override;
 
     bool
-    evaluate(const Deformation &deformation,
-             const double      *history,
-             double            *trial_history,
-             bool               with_tangent,
-             Response          &response) const override;
+    evaluate_point(const Step &step,
+                   bool        with_tangent,
+                   Response   &response) const;
 
     Energy
     energy(const dealii::Tensor<2, 3> &deformation_gradient,
            const double               *history) const override;
-
-    double
-    stiffness() const override;
-
-    double
-    wave_speed() const override;
 
   private:
     /** Plastic work sigma_y alpha + H / 2 alpha^2 (J/m^3). */
@@ -77,13 +67,9 @@ namespace impm
     plastic_work(double equivalent_plastic_strain) const;
 
     const HenckyElasticity elasticity;
-    const double           yield_stress;
-    const double           hardening;
-
-    // where declare_history() has put the fields, and how they are stored
-    std::optional<PointLayout> layout;
-    unsigned int               elastic_offset = 0;
-    unsigned int               plastic_offset = 0;
+    const double           yield_stress, hardening;
+    const PointLayout      storage; ///< knows how tensors are stored
+    const unsigned int     elastic_offset, plastic_offset;
   };
 } // namespace impm
 

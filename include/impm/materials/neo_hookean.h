@@ -2,127 +2,69 @@
 #define impm_materials_neo_hookean_h
 
 #include <impm/materials/elastic_constants.h>
-#include <impm/materials/material.h>
+#include <impm/materials/pointwise_law.h>
 
 #include <memory>
 
 namespace impm
 {
   /**
-   * What the neo-Hookean laws share: the energy is a function of tr b and J,
-   * the constants are those of small strains, and there is no history.
+   * Two laws whose energy is a function of tr b and J, with the constants of
+   * small strains and no history. The most common one couples shape and
+   * volume,
+   *
+   *   psi = G / 2 (tr b - 3 - 2 ln J) + lambda / 2 (ln J)^2,
+   *   tau = G (b - 1) + lambda ln J 1;
+   *
+   * decoupled (Guilkey & Weiss 2003, eq. 20) the change of shape stands apart
+   * from that of volume,
+   *
+   *   psi = G / 2 (J^(-2/3) tr b - 3) + K / 2 (ln J)^2,
+   *   tau = G J^(-2/3) dev b + K ln J 1.
    */
-  class NeoHookean : public Material
+  template <bool decoupled>
+  class NeoHookean final : public PointwiseLaw<NeoHookean<decoupled>>
   {
   public:
-    NeoHookean(const ElasticConstants &constants, double density);
+    NeoHookean(const MaterialSpec &spec, const ElasticConstants &constants);
 
-    void
-    declare_history(PointLayout &layout) override;
+    static void
+    declare_parameters(dealii::ParameterHandler &prm);
 
-    void
-    initialize_history(double *history) const override;
+    static std::unique_ptr<const Material>
+    create(dealii::ParameterHandler &prm,
+           const MaterialSpec       &spec,
+           PointLayout              &history);
 
     bool
-    evaluate(const Deformation &deformation,
-             const double      *history,
-             double            *trial_history,
-             bool               with_tangent,
-             Response          &response) const override;
+    evaluate_point(const Material::Step &step,
+                   bool                  with_tangent,
+                   Material::Response   &response) const;
 
-    Energy
+    Material::Energy
     energy(const dealii::Tensor<2, 3> &deformation_gradient,
            const double               *history) const override;
 
-    double
-    stiffness() const override;
-
-    double
-    wave_speed() const override;
-
-  protected:
+  private:
     struct Strain
     {
       dealii::SymmetricTensor<2, 3> b_minus_1; ///< F F^T - 1
       double                        log_J;
     };
 
-    /** psi (J/m^3). */
-    virtual double
-    potential(const Strain &strain) const = 0;
-
-    /** Fills in tau and, when asked for, c. */
-    virtual void
-    respond(const Strain &strain,
-            bool          with_tangent,
-            Response     &response) const = 0;
-
-    const ElasticConstants constants;
-
-  private:
     /** Returns false where J <= 0. */
     static bool
     measure(const dealii::Tensor<2, 3> &F, Strain &strain);
-  };
 
-
-  /**
-   * The most common neo-Hookean law,
-   *
-   *   psi = G / 2 (tr b - 3 - 2 ln J) + lambda / 2 (ln J)^2,
-   *   tau = G (b - 1) + lambda ln J 1,
-   *
-   * which couples shape and volume.
-   */
-  class CoupledNeoHookean final : public NeoHookean
-  {
-  public:
-    using NeoHookean::NeoHookean;
-
-    static void
-    declare_parameters(dealii::ParameterHandler &prm);
-
-    static std::unique_ptr<Material>
-    create(dealii::ParameterHandler &prm);
-
-  protected:
+    /** psi (J/m^3). */
     double
-    potential(const Strain &strain) const override;
+    potential(const Strain &strain) const;
 
-    void
-    respond(const Strain &strain,
-            bool          with_tangent,
-            Response     &response) const override;
+    const ElasticConstants constants;
   };
 
-
-  /**
-   * Guilkey & Weiss (2003), eq. 20: the change of shape apart from that of
-   * volume,
-   *
-   *   psi = G / 2 (J^(-2/3) tr b - 3) + K / 2 (ln J)^2,
-   *   tau = G J^(-2/3) dev b + K ln J 1.
-   */
-  class DecoupledNeoHookean final : public NeoHookean
-  {
-  public:
-    using NeoHookean::NeoHookean;
-
-    static void
-    declare_parameters(dealii::ParameterHandler &prm);
-
-    static std::unique_ptr<Material>
-    create(dealii::ParameterHandler &prm);
-
-  protected:
-    double
-    potential(const Strain &strain) const override;
-
-    void
-    respond(const Strain &strain,
-            bool          with_tangent,
-            Response     &response) const override;
-  };
+  using CoupledNeoHookean   = NeoHookean<false>;
+  using DecoupledNeoHookean = NeoHookean<true>;
 } // namespace impm
 
 #endif

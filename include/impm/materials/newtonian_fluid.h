@@ -1,10 +1,9 @@
 #ifndef impm_materials_newtonian_fluid_h
 #define impm_materials_newtonian_fluid_h
 
-#include <impm/materials/material.h>
+#include <impm/materials/pointwise_law.h>
 
 #include <memory>
-#include <optional>
 
 namespace impm
 {
@@ -20,46 +19,36 @@ namespace impm
    * History: "viscous_stress" (Pa), which is that of the state at t_n, and
    * "viscous_work" per initial volume (J/m^3).
    */
-  class NewtonianFluid final : public Material
+  class NewtonianFluid final : public PointwiseLaw<NewtonianFluid>
   {
   public:
     /** K (Pa, > 0), mu and lambda (Pa s), 3 lambda + 2 mu >= 0. */
-    NewtonianFluid(double bulk,
-                   double viscosity,
-                   double second_viscosity,
-                   double density);
+    NewtonianFluid(const MaterialSpec &spec,
+                   PointLayout        &history,
+                   double              bulk,
+                   double              viscosity,
+                   double              second_viscosity);
 
     static void
     declare_parameters(dealii::ParameterHandler &prm);
 
-    static std::unique_ptr<Material>
-    create(dealii::ParameterHandler &prm);
-
-    void
-    declare_history(PointLayout &layout) override;
+    static std::unique_ptr<const Material>
+    create(dealii::ParameterHandler &prm,
+           const MaterialSpec       &spec,
+           PointLayout              &history);
 
     void
     initialize_history(double *history) const override;
 
     /** With dt = 0 the viscous stress is that of the history. */
     bool
-    evaluate(const Deformation &deformation,
-             const double      *history,
-             double            *trial_history,
-             bool               with_tangent,
-             Response          &response) const override;
+    evaluate_point(const Step &step,
+                   bool        with_tangent,
+                   Response   &response) const;
 
     Energy
     energy(const dealii::Tensor<2, 3> &deformation_gradient,
            const double               *history) const override;
-
-    /** K: what a step resists with whatever its length. */
-    double
-    stiffness() const override;
-
-    /** sqrt(K / rho_0) */
-    double
-    wave_speed() const override;
 
     Form
     form() const override
@@ -84,11 +73,9 @@ namespace impm
     dealii::SymmetricTensor<2, 3>
     viscous_stress(const dealii::SymmetricTensor<2, 3> &rate) const;
 
-    const double bulk, viscosity, second_viscosity;
-
-    // where declare_history() has put the fields, and how they are stored
-    std::optional<PointLayout> layout;
-    unsigned int               stress_offset = 0, work_offset = 0;
+    const double       bulk, viscosity, second_viscosity;
+    const PointLayout  storage; ///< knows how tensors are stored
+    const unsigned int stress_offset, work_offset;
   };
 } // namespace impm
 

@@ -2,7 +2,7 @@
 #define impm_materials_rate_law_h
 
 #include <impm/materials/elastic_constants.h>
-#include <impm/materials/hardening.h>
+#include <impm/materials/hardening/bilinear.h>
 #include <impm/materials/material.h>
 
 #include <memory>
@@ -23,8 +23,9 @@ namespace impm
   public:
     using Hardening = std::optional<BilinearHardening>;
 
-    RateLaw(const ElasticConstants &constants,
-            double                  density,
+    RateLaw(const MaterialSpec     &spec,
+            PointLayout            &history,
+            const ElasticConstants &constants,
             const Hardening        &hardening = {});
 
     static void
@@ -34,24 +35,27 @@ namespace impm
     declare_von_mises(dealii::ParameterHandler &prm);
 
     template <typename Law>
-    static std::unique_ptr<Material>
-    create_elastic(dealii::ParameterHandler &prm)
+    static std::unique_ptr<const Material>
+    create_elastic(dealii::ParameterHandler &prm,
+                   const MaterialSpec       &spec,
+                   PointLayout              &history)
     {
-      return std::make_unique<Law>(ElasticConstants::from_parameters(prm),
-                                   prm.get_double("Density"));
+      return std::make_unique<Law>(spec,
+                                   history,
+                                   ElasticConstants::from_parameters(prm));
     }
 
     template <typename Law>
-    static std::unique_ptr<Material>
-    create_von_mises(dealii::ParameterHandler &prm)
+    static std::unique_ptr<const Material>
+    create_von_mises(dealii::ParameterHandler &prm,
+                     const MaterialSpec       &spec,
+                     PointLayout              &history)
     {
-      return std::make_unique<Law>(ElasticConstants::from_parameters(prm),
-                                   prm.get_double("Density"),
+      return std::make_unique<Law>(spec,
+                                   history,
+                                   ElasticConstants::from_parameters(prm),
                                    read_hardening(prm));
     }
-
-    void
-    declare_history(PointLayout &layout) override;
 
     void
     initialize_history(double *history) const override;
@@ -59,12 +63,6 @@ namespace impm
     Energy
     energy(const dealii::Tensor<2, 3> &deformation_gradient,
            const double               *history) const override;
-
-    double
-    stiffness() const override;
-
-    double
-    wave_speed() const override;
 
   protected:
     /** The stress at the end of a step, and how it follows the trial stress. */
@@ -92,7 +90,7 @@ namespace impm
     dealii::SymmetricTensor<2, 3>
     load_stress(const double *history) const
     {
-      return layout->load_symmetric(history + stress_offset);
+      return storage.load_symmetric(history + stress_offset);
     }
 
     void
@@ -124,11 +122,9 @@ namespace impm
     static BilinearHardening
     read_hardening(dealii::ParameterHandler &prm);
 
-    const Hardening hardening;
-
-    // where declare_history() has put the fields, and how they are stored
-    std::optional<PointLayout> layout;
-    unsigned int               stress_offset = 0, plastic_offset = 0;
+    const Hardening    hardening;
+    const PointLayout  storage; ///< knows how tensors are stored
+    const unsigned int stress_offset, plastic_offset;
   };
 } // namespace impm
 

@@ -21,9 +21,10 @@ namespace impm
                  line_searches = 0, step_cuts = 0, projections = 0,
                  solver_fallbacks = 0, noise_stops = 0, held_cells = 0,
                  limited_boxes = 0, active_cells = 0, dofs = 0;
-    double residual      = 0;
-    double external_work = 0; ///< since the start (J)
-    double wall_seconds  = 0; ///< since the start
+    double residual           = 0;
+    double external_work      = 0; ///< since the start (J)
+    double stabilization_work = 0; ///< of it, taken by the ghost penalty (J)
+    double wall_seconds       = 0; ///< since the start
 
     /** Goes on to a later step; counts add up. */
     void
@@ -69,11 +70,10 @@ namespace impm
     open(const std::string &directory);
 
     /**
-     * The figures of reactions at the end of a step that has converged.
-     * Collective.
+     * The figures of reactions from StepProblem::end_forces(). Collective.
      */
     void
-    take_reactions(const StepProblem<dim> &problem);
+    take_reactions(const StepProblem<dim> &problem, const Vector &forces);
 
     /**
      * Adds a row, after the points have moved, on all that happened since the

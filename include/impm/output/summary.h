@@ -34,6 +34,7 @@ namespace impm
     std::vector<std::pair<std::string, double>>        figures; ///< last row
     std::map<std::string, double> phases; ///< wall seconds of rank 0
     double                        wall_seconds;
+    std::vector<std::string>      warnings;
     std::vector<ReferenceError>   errors;
 
     /** Collective, for the peak of memory over all ranks. */

@@ -176,8 +176,8 @@ namespace impm
     const MPI_Comm    communicator;
 
   private:
-    std::vector<std::shared_ptr<Material>> materials; ///< by body
-    std::vector<double *>                  data;
+    std::vector<std::shared_ptr<const Material>> materials; ///< by body
+    std::vector<double *>                        data;
   };
 
   /**

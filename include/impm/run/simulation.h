@@ -9,6 +9,8 @@
 #include <impm/grid/grid_policy.h>
 #include <impm/output/history.h>
 #include <impm/output/pictures.h>
+#include <impm/output/warnings.h>
+#include <impm/run/external_work.h>
 #include <impm/run/solve_step.h>
 #include <impm/study/reference.h>
 #include <impm/time/step_control.h>
@@ -73,12 +75,17 @@ namespace impm
     double
     cfl_unit() const;
 
-    /** Warns of steps that a theta below one half cannot take. */
+    /** Warns of steps beyond what the integrator is stable in. */
     void
     warn_of_instability();
 
-    double
-    external_work_of_step() const;
+    /** Says what is the first of its kind. Alike on all ranks. */
+    void
+    warn(const std::string &kind, const std::string &text);
+
+    /** Warns of prescribed faces that have lost their material. Collective. */
+    void
+    watch_faces();
 
     /** What is due once a row of the history. Collective. */
     void
@@ -113,15 +120,19 @@ namespace impm
     WorkCounts                                   counts;
     std::unique_ptr<StepProblem<dim>>            problem; ///< of this step
     StepResult                                   result;
+    ExternalWork<dim>                            work;
 
-    Pictures<dim>  pictures;
-    History<dim>   history;
-    Reference<dim> reference;
-    Console        console;
-    dealii::Timer  wall;
-    std::string    directory;
-    double         next_picture = 0;
-    StepReport     report;
+    Pictures<dim>             pictures;
+    History<dim>              history;
+    Reference<dim>            reference;
+    Console                   console;
+    Warnings                  warnings;
+    unsigned int              n_steps = 0;  ///< completed
+    std::array<bool, 2 * dim> face_holds{}; ///< material, in the last step
+    dealii::Timer             wall;
+    std::string               directory;
+    double                    next_picture = 0;
+    StepReport                report;
     struct
     {
       unsigned long newton = 0, linear = 0, line_searches = 0, cuts = 0,

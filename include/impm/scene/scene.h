@@ -63,7 +63,7 @@ namespace impm
     std::string                       point_file;
     std::array<unsigned int, dim>     points_per_cell; ///< by direction
 
-    std::shared_ptr<Material>                    material; ///< if deformable
+    std::shared_ptr<const Material>              material; ///< if deformable
     std::shared_ptr<dealii::FunctionParser<dim>> velocity; ///< at the start
 
     /** Of a rigid body: displacement since t = 0 as a function of time. */
@@ -225,10 +225,12 @@ namespace impm
   template <int dim>
   struct Scene
   {
-    std::string                                  title;
-    std::map<std::string, double>                constants;
-    GeometryKind                                 geometry;
-    GridSpec<dim>                                grid;
+    std::string                   title;
+    std::map<std::string, double> constants;
+    GeometryKind                  geometry;
+    GridSpec<dim>                 grid;
+    /** What the laws of the bodies keep at each point, shared by name. */
+    std::optional<PointLayout>                   history;
     std::vector<BodySpec<dim>>                   bodies;
     std::array<FaceSpec<dim>, 2 * dim>           faces;
     std::shared_ptr<dealii::FunctionParser<dim>> body_force; ///< N/kg, or null
@@ -240,7 +242,7 @@ namespace impm
     OutputSpec                      output;
     std::vector<ReferenceSpec<dim>> references;
 
-    /** What the file names to no effect. */
+    /** What the file says to no effect, or to one that may surprise. */
     std::vector<std::string> warnings;
 
     /**

@@ -2,6 +2,9 @@
 #define impm_solve_convergence_test_h
 
 #include <impm/scene/scene.h>
+#include <impm/solve/nonlinear_system.h>
+
+#include <vector>
 
 namespace impm
 {
@@ -16,6 +19,8 @@ namespace impm
   class ConvergenceTest
   {
   public:
+    using Evaluation = NonlinearSystem::Evaluation;
+
     explicit ConvergenceTest(const SolverSpec &spec)
       : spec(spec)
     {}
@@ -24,32 +29,47 @@ namespace impm
     void
     begin_step();
 
-    /** What the step has to solve: the scaled residual at its first guess. */
+    /** What the step has to solve: the parts of the residual at its first
+     * guess. */
     void
-    set_first_residual(double residual);
+    set_first_residual(std::vector<double> parts);
 
     /** An iteration with the norm of its change and its energy du Q (N m). */
     void
     count(double change, double energy);
 
     /**
-     * Whether an iterate with this scaled residual is good enough. The second
-     * criterion takes at least one iteration.
+     * Whether an iterate is good enough, every part of it: its residual is
+     * small, and small beside what it was at first and beside what acts in it;
+     * or it is round-off. The second criterion takes at least one iteration.
      */
     bool
-    is_met(double residual) const;
+    is_met(const Evaluation &now) const;
 
     /** Whether it is as good as an error of the solution must be, however
      * little the step has changed. */
     bool
-    allows(double residual) const;
+    allows(const Evaluation &now) const;
+
+    /**
+     * Whether an iterate that is allowed is one of several in a row that get
+     * no better: of a body that comes to rest, round-off is all that is left
+     * to reduce. To be asked once for each iterate.
+     */
+    bool
+    stagnates(const Evaluation &now);
 
   private:
-    const SolverSpec &spec;
-    double            first_residual = 0;
-    bool              any            = false;
-    double            largest_change = 0, first_energy = 0;
-    double            change = 0, energy = 0; ///< of the last iteration
+    bool
+    changes_little() const;
+
+    const SolverSpec   &spec;
+    std::vector<double> first_residual;
+    double              smallest_residual = 0;
+    unsigned int        n_in_vain         = 0;
+    bool                any               = false;
+    double              largest_change = 0, first_energy = 0;
+    double              change = 0, energy = 0; ///< of the last iteration
   };
 } // namespace impm
 

@@ -21,7 +21,8 @@ namespace impm
     linearize_at(const Vector &u);
 
     /**
-     * Like NonlinearSystem::vmult; leaves the system evaluated elsewhere.
+     * Like NonlinearSystem::vmult; leaves the system evaluated elsewhere, with
+     * the tangent that it had.
      * Throws LinearizationError where there is no residual. Collective.
      */
     void
@@ -30,13 +31,6 @@ namespace impm
     /** Like NonlinearSystem::vmult_lift. */
     void
     vmult_lift(Vector &dst, const Vector &src);
-
-    /** Evaluates the system with its tangent where it was linearized. */
-    void
-    go_back()
-    {
-      system.evaluate(u, true);
-    }
 
   private:
     /** Of an increment, or of the momentum that it stands for. */

@@ -28,17 +28,26 @@ namespace impm
   public:
     virtual ~NonlinearSystem() = default;
 
+    /** A part of the residual that is judged apart, in units of its own. */
+    struct Part
+    {
+      double residual  = 0;
+      double round_off = 0; ///< below this `residual` is noise
+      /** What acts in it, if a residual should be small beside that, or 0. */
+      double at_work = 0;
+    };
+
     struct Evaluation
     {
-      bool   admissible = false; ///< whether there is a residual
-      double potential  = 0;     ///< (J)
-      double residual   = 0;     ///< scaled, see unit_of_residual()
-      double round_off  = 0;     ///< below this `residual` is noise
+      bool              admissible = false; ///< whether there is a residual
+      double            potential  = 0;     ///< (J)
+      double            residual   = 0;     ///< the largest of the parts
+      std::vector<Part> parts;
     };
 
     /**
      * Evaluates the residual and, if wanted, the tangent at `u`, which
-     * satisfies the constraints.
+     * satisfies the constraints. A tangent stays until the next is wanted.
      */
     virtual Evaluation
     evaluate(const Vector &u, bool with_tangent) = 0;
@@ -47,9 +56,10 @@ namespace impm
     virtual const Vector &
     residual() const = 0;
 
-    /** What the norm of residuals is measured in (N). */
-    virtual double
-    unit_of_residual() const = 0;
+    /** Norms of another force (N) by the parts of residuals, each the largest
+     * of those that feel each other. */
+    virtual std::vector<double>
+    norms_of(const Vector &force) const = 0;
 
     /** Whether the residual derives from the potential. */
     virtual bool

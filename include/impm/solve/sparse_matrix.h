@@ -91,7 +91,8 @@ namespace impm
 
     /**
      * For a matrix that stays as it is; `modes` are what costs hardly any
-     * energy, by locally owned value. Collective.
+     * energy, by locally owned value. Throws LinearizationError, on every rank
+     * alike, when the matrix is singular. Collective.
      */
     void
     build(const SparseMatrix                     &matrix,

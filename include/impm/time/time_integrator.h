@@ -32,6 +32,20 @@ namespace impm
       return has_inertia() && force_factor() == 0;
     }
 
+    /** Whether a step asks for the forces at its start, f(0). */
+    virtual bool
+    needs_start_forces() const
+    {
+      return force_factor() < 1;
+    }
+
+    /**
+     * The longest step (s) in which an undamped oscillation of a circular
+     * frequency (1/s) does not grow; infinite if it never does.
+     */
+    virtual double
+    stable_step(double frequency) const = 0;
+
     /** Whether the points carry their acceleration from step to step. */
     virtual bool
     keeps_acceleration() const
@@ -48,7 +62,7 @@ namespace impm
 
     /**
      * The known part of the acceleration (m/s^2). `acceleration` is that at
-     * the start where the integrator keeps it or weighs the forces there.
+     * the start where the integrator keeps it or needs the forces there.
      */
     virtual void
     known_acceleration(double        dt,

@@ -13,7 +13,7 @@ namespace impm
   void
   add_face_tractions(const Scene<dim>          &scene,
                      const BackgroundGrid<dim> &grid,
-                     const Discretization<dim> &discretization,
+                     const PopulatedCells<dim> &populated,
                      const double               instant,
                      const double               factor,
                      Vector                    &force)
@@ -25,9 +25,8 @@ namespace impm
                              update_values | update_quadrature_points |
                                update_JxW_values);
     dealii::Vector<double> traction(dim);
-    for (const auto &cell :
-         discretization.dof_handler().active_cell_iterators())
-      if (cell->is_locally_owned() && cell->at_boundary())
+    for (const auto &[cell, nodes] : populated.cells)
+      if (cell->at_boundary())
         for (const unsigned int f : cell->face_indices())
           {
             if (!cell->face(f)->at_boundary())
@@ -38,7 +37,6 @@ namespace impm
             spec.traction->set_time(instant);
             values.reinit(
               typename Triangulation<dim>::active_cell_iterator(cell), f);
-            const auto nodes = discretization.nodes_of(cell);
             for (const unsigned int q : values.quadrature_point_indices())
               {
                 const auto &x = values.quadrature_point(q);
@@ -59,14 +57,14 @@ namespace impm
   template void
   add_face_tractions(const Scene<2> &,
                      const BackgroundGrid<2> &,
-                     const Discretization<2> &,
+                     const PopulatedCells<2> &,
                      double,
                      double,
                      Vector &);
   template void
   add_face_tractions(const Scene<3> &,
                      const BackgroundGrid<3> &,
-                     const Discretization<3> &,
+                     const PopulatedCells<3> &,
                      double,
                      double,
                      Vector &);

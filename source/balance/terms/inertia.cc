@@ -1,6 +1,6 @@
+#include <impm/balance/residual_norm.h>
 #include <impm/balance/terms/inertia.h>
 
-#include <cmath>
 #include <utility>
 
 namespace impm
@@ -52,16 +52,20 @@ namespace impm
     diagonal.add(factor, mass);
   }
 
-  double
-  Inertia::square_of_parts(const Vector &u) const
+  void
+  Inertia::add_squares_of_parts(const Vector        &u,
+                                const ResidualNorm  &norm,
+                                std::vector<double> &squares) const
   {
-    double sum = 0;
-    for (unsigned int i = 0; i < mass.locally_owned_size(); ++i)
-      {
-        const double m = mass.local_element(i);
-        sum += std::pow(m * factor * u.local_element(i), 2) +
-               std::pow(m * known.local_element(i), 2);
-      }
-    return sum;
+    Vector     part = u;
+    const auto add  = [&](const double size) {
+      part.scale(mass);
+      const auto more = norm.squares(part);
+      for (unsigned int g = 0; g < squares.size(); ++g)
+        squares[g] += size * size * more[g];
+    };
+    add(factor);
+    part = known;
+    add(1);
   }
 } // namespace impm

@@ -1,3 +1,4 @@
+#include <impm/balance/residual_norm.h>
 #include <impm/balance/terms/internal_forces.h>
 
 namespace impm
@@ -22,6 +23,17 @@ namespace impm
     gradients_at_points(u, response.gradients);
     potential = 0;
     return response.evaluate(with_tangent, potential);
+  }
+
+  template <int dim>
+  void
+  InternalForces<dim>::add_squares_of_parts(const Vector &,
+                                            const ResidualNorm  &norm,
+                                            std::vector<double> &squares) const
+  {
+    response.add_squares_of_stresses(norm.group_of_body, squares);
+    for (double &square : squares)
+      square /= extent * extent;
   }
 
   template <int dim>

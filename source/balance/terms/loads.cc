@@ -50,6 +50,7 @@ namespace impm
                const Footprints<dim>     &footprints,
                const BackgroundGrid<dim> &grid,
                const Discretization<dim> &discretization,
+               const PopulatedCells<dim> &populated,
                const double               instant)
   {
     Vector load;
@@ -58,7 +59,7 @@ namespace impm
       add_body_force(scene, points, footprints, instant, load);
     add_point_tractions(scene, points, footprints, instant, -1., load);
     if (grid.is_lagrangian)
-      add_face_tractions(scene, grid, discretization, instant, -1., load);
+      add_face_tractions(scene, grid, populated, instant, -1., load);
     load.compress(VectorOperation::add);
     discretization.condense_hanging(load);
     return load;
@@ -70,6 +71,7 @@ namespace impm
                const Footprints<2> &,
                const BackgroundGrid<2> &,
                const Discretization<2> &,
+               const PopulatedCells<2> &,
                double);
   template Vector
   gather_loads(const Scene<3> &,
@@ -77,5 +79,6 @@ namespace impm
                const Footprints<3> &,
                const BackgroundGrid<3> &,
                const Discretization<3> &,
+               const PopulatedCells<3> &,
                double);
 } // namespace impm

@@ -1,4 +1,5 @@
 #include <impm/balance/terms/ghost_penalty.h>
+#include <impm/base/exceptions.h>
 #include <impm/solve/difference_quotient.h>
 
 #include <gtest/gtest.h>
@@ -434,4 +435,15 @@ TEST(MomentumBalanceMpi, GhostPenaltyOfAKink)
                   1.,
                   1e-11);
     }
+}
+
+
+// One rank alone has the point that has no stress; all of them must stop.
+TEST(MomentumBalanceMpi, ABadPointAtTheStartStopsAllRanks)
+{
+  Model<2> model(block_scene("plane strain"),
+                 {"Time/Integrator=theta", "Time/Theta=0.5"});
+  if (Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
+    model.points.fields(0)[model.points.offset_deformation] = -1;
+  EXPECT_THROW(model.begin_step(), ComputationError);
 }

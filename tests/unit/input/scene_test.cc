@@ -78,6 +78,80 @@ TEST(SceneMpi, ARigidBodyThatOverlaps)
 }
 
 
+// A slip holds the component along the axis, whatever the map makes of the
+// face.
+TEST(SceneMpi, SlipOnAFaceThatTheMapTilts)
+{
+  const auto on = [](const std::string &face, const std::string &type) {
+    const std::string path      = "Boundary conditions/" + face + "/";
+    Overrides         overrides = {"Grid/Method=Lagrangian",
+                                   "Grid/Map=x + 0.3*y; y*(1 + 0.2*x)",
+                                   "Geometry/box/Lower corner=-9, -9",
+                                   "Geometry/box/Upper corner=9, 9",
+                                   path + "Type=" + type};
+    if (type.rfind("normal", 0) == 0)
+      overrides.push_back(path + "Value=0.1*t");
+    return overrides;
+  };
+  for (const std::string type :
+       {"slip", "normal displacement", "normal velocity"})
+    {
+      for (const std::string face : {"left", "right", "top"})
+        expect_blame(on(face, type),
+                     "Boundary conditions/" + face + "/Type",
+                     {"'" + type + "'", "Map", "allowed", "displacement"});
+      EXPECT_NO_THROW(scene_from<2>(plane, on("bottom", type)));
+    }
+  EXPECT_NO_THROW(scene_from<2>(plane, on("left", "fixed")));
+  // a face that bulges between its corners, one that has turned
+  expect_blame(on("left", "slip") +
+                 Overrides{"Grid/Map=x + 0.1*(1 - x)*y*(1 - y); y"},
+               "Boundary conditions/left/Type",
+               {"'slip'"});
+  expect_blame(on("left", "slip") + Overrides{"Grid/Map=1 - y; x"},
+               "Boundary conditions/left/Type",
+               {"'slip'"});
+  const Overrides solid = {"Grid/Method=Lagrangian",
+                           "Grid/Map=x; y; z + 0.1*x*(1 - z)",
+                           "Boundary conditions/left/Type=slip",
+                           "Boundary conditions/front/Type=slip"};
+  EXPECT_NO_THROW(scene_from<3>(block_scene("3D"), solid));
+  EXPECT_THROW(scene_from<3>(block_scene("3D"),
+                             solid +
+                               Overrides{"Boundary conditions/back/Type=slip"}),
+               InputError);
+}
+
+
+// 1/r of such a point is not a number.
+TEST(SceneMpi, APointOnTheAxis)
+{
+  std::string       text  = block_scene("axisymmetric");
+  const std::string shape = "    set Shape    = box\n";
+  text.erase(text.find(shape), shape.size());
+  const TemporaryFile cloud("x,y,volume\n0.3,0.3,0.04\n0,0.4,0.09\n", ".csv");
+  const Overrides     from_file = {"Bodies/block/Points from=file",
+                                   "Bodies/block/File=" + cloud.name};
+  for (const std::string method : {"MPM", "GIMP"})
+    try
+      {
+        const auto scene =
+          scene_from<2>(text, from_file + Overrides{"Grid/Method=" + method});
+        const Simulation<2> simulation(scene,
+                                       CommandLine::Verbosity::quiet,
+                                       MPI_COMM_WORLD);
+        ADD_FAILURE() << "is taken";
+      }
+    catch (const InputError &error)
+      {
+        const std::string message = error.what();
+        EXPECT_EQ(error.entry, "Bodies/block/File");
+        EXPECT_NE(message.find("point 2 of"), std::string::npos) << message;
+        EXPECT_NE(message.find("axis"), std::string::npos) << message;
+      }
+}
+
+
 TEST(Scene, UnknownNames)
 {
   expect_blame({"Bodies/block/Shape=bocks"},

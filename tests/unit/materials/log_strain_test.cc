@@ -20,14 +20,14 @@ namespace
 
   const HenckyElasticity elasticity(1., 0.3);
 
-  const LogStrainElastic law(elasticity, 1000.);
+  const LogStrainElastic law({1000.}, elasticity);
 
   Material::Response
   respond(const Tensor<2, 3> &total)
   {
     Material::Response response;
     EXPECT_TRUE(
-      law.evaluate({total, total, 0.}, nullptr, nullptr, true, response));
+      law.evaluate_one({total, total, 0., nullptr, nullptr}, true, response));
     return response;
   }
 
@@ -35,7 +35,9 @@ namespace
   is_refused(const Tensor<2, 3> &total)
   {
     Material::Response response;
-    return !law.evaluate({total, total, 0.}, nullptr, nullptr, true, response);
+    return !law.evaluate_one({total, total, 0., nullptr, nullptr},
+                             true,
+                             response);
   }
 } // namespace
 
@@ -251,13 +253,11 @@ TEST(LogStrain, EntriesOfTheElasticLaw)
   prm.set("Young's modulus", "20");
   prm.set("Poisson's ratio", "0.25");
   prm.set("Density", "6");
-  const auto material = entry->create(prm);
+  PointLayout layout(GeometryKind::three_d);
+  const auto  material = entry->create(prm, {6.}, layout);
   EXPECT_EQ(material->stiffness(), 20.);
   EXPECT_EQ(material->density, 6.);
   EXPECT_TRUE(material->has_potential());
   EXPECT_NEAR(material->wave_speed(), 2., 1e-15); // K + 4/3 G = 24
-
-  PointLayout layout(GeometryKind::three_d);
-  material->declare_history(layout);
   EXPECT_EQ(layout.size(), 0u);
 }

@@ -22,9 +22,10 @@ namespace
     static Material::Response
     respond(const Tensor<2, 3> &F, const double poisson = 0.3)
     {
-      const Law          law(ElasticConstants(1., poisson), 1000.);
+      const Law          law({1000.}, ElasticConstants(1., poisson));
       Material::Response response;
-      EXPECT_TRUE(law.evaluate({F, F, 0.}, nullptr, nullptr, true, response));
+      EXPECT_TRUE(
+        law.evaluate_one({F, F, 0., nullptr, nullptr}, true, response));
       EXPECT_EQ(law.energy(F, nullptr).stored, response.potential);
       return response;
     }
@@ -32,9 +33,9 @@ namespace
     static bool
     is_refused(const Tensor<2, 3> &F)
     {
-      const Law          law(ElasticConstants(1., 0.3), 1000.);
+      const Law          law({1000.}, ElasticConstants(1., 0.3));
       Material::Response response;
-      return !law.evaluate({F, F, 0.}, nullptr, nullptr, true, response);
+      return !law.evaluate_one({F, F, 0., nullptr, nullptr}, true, response);
     }
   };
 
@@ -176,8 +177,9 @@ TEST(NeoHookean, FiguresByHand)
   const auto              F         = diagonal(2., 1., 1.);
   const double            log_J     = std::log(2.);
   Material::Response      response;
-  const CoupledNeoHookean coupled(constants, 1.);
-  ASSERT_TRUE(coupled.evaluate({F, F, 0.}, nullptr, nullptr, false, response));
+  const CoupledNeoHookean coupled({1.}, constants);
+  ASSERT_TRUE(
+    coupled.evaluate_one({F, F, 0., nullptr, nullptr}, false, response));
   EXPECT_NEAR(response.kirchhoff_stress[0][0], 3 * mu + lame * log_J, 1e-14);
   EXPECT_NEAR(response.kirchhoff_stress[1][1], lame * log_J, 1e-14);
   EXPECT_NEAR(response.potential,
@@ -185,9 +187,9 @@ TEST(NeoHookean, FiguresByHand)
               1e-14);
 
   const double              shrink = std::pow(2., -2. / 3.);
-  const DecoupledNeoHookean decoupled(constants, 1.);
+  const DecoupledNeoHookean decoupled({1.}, constants);
   ASSERT_TRUE(
-    decoupled.evaluate({F, F, 0.}, nullptr, nullptr, false, response));
+    decoupled.evaluate_one({F, F, 0., nullptr, nullptr}, false, response));
   EXPECT_NEAR(response.kirchhoff_stress[0][0],
               2 * mu * shrink + kappa * log_J,
               1e-14);

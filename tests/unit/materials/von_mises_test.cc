@@ -32,10 +32,9 @@ namespace
     explicit PointState(const double       hardening,
                         const GeometryKind geometry = GeometryKind::three_d)
       : layout(geometry)
-      , law(elasticity, 1000., sigma_y, hardening)
+      , law({1000.}, layout, elasticity, sigma_y, hardening)
+      , history(layout.size())
     {
-      law.declare_history(layout);
-      history.resize(layout.size());
       law.initialize_history(history.data());
       trial_history = history;
     }
@@ -43,11 +42,13 @@ namespace
     bool
     evaluate(const Tensor<2, 3> &increment, const bool with_tangent = true)
     {
-      return law.evaluate({increment, increment * total, 0.},
-                          history.data(),
-                          trial_history.data(),
-                          with_tangent,
-                          response);
+      return law.evaluate_one({increment,
+                               increment * total,
+                               0.,
+                               history.data(),
+                               trial_history.data()},
+                              with_tangent,
+                              response);
     }
 
     const Material::Response &
@@ -449,15 +450,14 @@ TEST(VonMises, Entries)
   prm.set("Density", "6");
   prm.set("Yield stress", "2");
   prm.set("Hardening modulus", "3");
-  const auto material = entry->create(prm);
+  PointLayout layout(GeometryKind::plane_strain);
+  layout.add("something else", PointLayout::Kind::vector);
+  const auto material = entry->create(prm, {6.}, layout);
   EXPECT_EQ(material->stiffness(), 20.);
   EXPECT_EQ(material->density, 6.);
   EXPECT_TRUE(material->has_potential());
   EXPECT_NEAR(material->wave_speed(), 2., 1e-15); // K + 4/3 G = 24
 
-  PointLayout layout(GeometryKind::plane_strain);
-  layout.add("something else", PointLayout::Kind::vector);
-  material->declare_history(layout);
   std::vector<double> history(layout.size());
   material->initialize_history(history.data());
   history[layout.offset("equivalent_plastic_strain")] = 0.5;

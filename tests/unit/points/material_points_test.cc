@@ -255,6 +255,13 @@ TEST(MaterialPoints, CarryOnlyWhatTheSceneNeeds)
   EXPECT_GE(flowing.offset("elastic_left_cauchy_green"), 6u);
   EXPECT_GE(flowing.offset("equivalent_plastic_strain"), 6u);
 
+  // a material that no body has adds nothing
+  const Overrides spare = {"Materials/Names=rubber, spare",
+                           "Materials/spare/Law=Newtonian fluid"};
+  EXPECT_EQ(names_of(choose("plane strain", spare)), bare);
+  EXPECT_EQ(names_of(choose("plane strain", plastic + spare)),
+            names_of(flowing));
+
   const Overrides probe = {"Output/Probes=p", "Output/p/Position=0, 0"};
   EXPECT_TRUE(choose("plane strain", probe).has("initial_position"));
   EXPECT_FALSE(choose("plane strain", probe).has("initial_domain"));

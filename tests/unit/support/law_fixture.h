@@ -9,6 +9,7 @@
 #include <impm/materials/newtonian_fluid.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,45 +17,71 @@ namespace impm
 {
   inline const ElasticConstants unit_elasticity(1., 0.3);
 
-  /** Every kind of law, of stiffness 1, which yields early if it yields. */
+  /** A law of density 1 and what it keeps at a point. */
   struct NamedLaw
   {
-    std::string               name;
-    std::shared_ptr<Material> law;
+    std::string                     name;
+    std::shared_ptr<const Material> law;
+    PointLayout                     history;
   };
 
-  inline std::vector<NamedLaw>
-  all_solids()
+  template <typename Law, typename... Parameters>
+  NamedLaw
+  make_law(const std::string &name,
+           const GeometryKind geometry,
+           const Parameters &...parameters)
   {
-    const BilinearHardening hardening(0.01, 0.1),
-      softening(0.01, 0.1, 0.01, 0.2);
+    PointLayout history(geometry);
+    const auto  law =
+      std::make_shared<Law>(MaterialSpec{1.}, history, parameters...);
+    return {name, law, history};
+  }
+
+  /** The same of a law without history. */
+  template <typename Law, typename Elasticity>
+  NamedLaw
+  make_elastic(const std::string &name,
+               const GeometryKind geometry,
+               const Elasticity  &elasticity)
+  {
+    return {name,
+            std::make_shared<Law>(MaterialSpec{1.}, elasticity),
+            PointLayout(geometry)};
+  }
+
+  /** Every kind of law, of stiffness 1, which yields early if it yields. */
+  inline std::vector<NamedLaw>
+  all_solids(const GeometryKind g = GeometryKind::three_d)
+  {
+    const HenckyElasticity   hencky(1., 0.3);
+    const auto              &c = unit_elasticity;
+    const RateLaw::Hardening hardening(std::in_place, 0.01, 0.1),
+      softening(std::in_place, 0.01, 0.1, 0.01, 0.2);
     return {
-      {"log-strain elastic",
-       std::make_shared<LogStrainElastic>(HenckyElasticity(1., 0.3), 1.)},
-      {"log-strain von Mises",
-       std::make_shared<LogStrainVonMises>(
-         HenckyElasticity(1., 0.3), 1., 0.01, 0.1)},
-      {"neo-Hookean", std::make_shared<CoupledNeoHookean>(unit_elasticity, 1.)},
-      {"decoupled neo-Hookean",
-       std::make_shared<DecoupledNeoHookean>(unit_elasticity, 1.)},
-      {"linear elastic", std::make_shared<LinearLaw>(unit_elasticity, 1.)},
-      {"linear von Mises",
-       std::make_shared<LinearLaw>(unit_elasticity, 1., hardening)},
-      {"linear, softening",
-       std::make_shared<LinearLaw>(unit_elasticity, 1., softening)},
-      {"Jaumann elastic", std::make_shared<JaumannLaw>(unit_elasticity, 1.)},
-      {"Jaumann von Mises",
-       std::make_shared<JaumannLaw>(unit_elasticity, 1., hardening)},
-      {"Jaumann, softening",
-       std::make_shared<JaumannLaw>(unit_elasticity, 1., softening)}};
+      make_elastic<LogStrainElastic>("log-strain elastic", g, hencky),
+      make_law<LogStrainVonMises>("log-strain von Mises", g, hencky, 0.01, 0.1),
+      make_elastic<CoupledNeoHookean>("neo-Hookean", g, c),
+      make_elastic<DecoupledNeoHookean>("decoupled neo-Hookean", g, c),
+      make_law<LinearLaw>("linear elastic", g, c),
+      make_law<LinearLaw>("linear von Mises", g, c, hardening),
+      make_law<LinearLaw>("linear, softening", g, c, softening),
+      make_law<JaumannLaw>("Jaumann elastic", g, c),
+      make_law<JaumannLaw>("Jaumann von Mises", g, c, hardening),
+      make_law<JaumannLaw>("Jaumann, softening", g, c, softening)};
+  }
+
+  inline NamedLaw
+  fluid_law(const double K, const double mu, const double lambda)
+  {
+    return make_law<NewtonianFluid>(
+      "Newtonian fluid", GeometryKind::three_d, K, mu, lambda);
   }
 
   inline std::vector<NamedLaw>
   all_laws()
   {
     auto laws = all_solids();
-    laws.push_back(
-      {"Newtonian fluid", std::make_shared<NewtonianFluid>(1., 0.3, -0.1, 1.)});
+    laws.push_back(fluid_law(1., 0.3, -0.1));
     return laws;
   }
 
@@ -62,16 +89,13 @@ namespace impm
   class LawPoint
   {
   public:
-    explicit LawPoint(Material          &law,
-                      const GeometryKind geometry = GeometryKind::three_d,
-                      const double       dt       = 0.5)
-      : law(law)
-      , layout(geometry)
+    explicit LawPoint(const NamedLaw &named, const double dt = 0.5)
+      : law(*named.law)
+      , layout(named.history)
       , dt(dt)
+      , history(layout.size())
+      , trial_history(layout.size())
     {
-      law.declare_history(layout);
-      history.resize(layout.size());
-      trial_history.resize(layout.size());
       law.initialize_history(history.data());
       for (unsigned int d = 0; d < 3; ++d)
         F[d][d] = 1;
@@ -83,11 +107,10 @@ namespace impm
       trial_F = increment * F;
       volume  = dealii::determinant(
         law.form() == Material::Form::linearized ? F : trial_F);
-      return law.evaluate({increment, trial_F, dt},
-                          history.data(),
-                          trial_history.data(),
-                          true,
-                          response);
+      return law.evaluate_one(
+        {increment, trial_F, dt, history.data(), trial_history.data()},
+        true,
+        response);
     }
 
     void
@@ -111,8 +134,8 @@ namespace impm
                0.;
     }
 
-    Material            &law;
-    PointLayout          layout;
+    const Material      &law;
+    const PointLayout    layout;
     double               dt;
     double               volume = 1; ///< that the stress is over
     std::vector<double>  history, trial_history;

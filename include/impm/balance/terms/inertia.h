@@ -31,8 +31,10 @@ namespace impm
     void
     add_diagonal(Vector &diagonal) const override;
 
-    double
-    square_of_parts(const Vector &u) const override;
+    void
+    add_squares_of_parts(const Vector        &u,
+                         const ResidualNorm  &norm,
+                         std::vector<double> &squares) const override;
 
   private:
     const Vector &mass;

@@ -40,11 +40,10 @@ namespace impm
       return potential;
     }
 
-    double
-    square_of_parts(const Vector &) const override
-    {
-      return response.square_of_stresses() / (extent * extent);
-    }
+    void
+    add_squares_of_parts(const Vector &,
+                         const ResidualNorm  &norm,
+                         std::vector<double> &squares) const override;
 
     bool
     add_start_force(Vector &force) override;

@@ -3,7 +3,7 @@
 
 #include <impm/balance/terms/term.h>
 #include <impm/footprints/footprints.h>
-#include <impm/grid/background_grid.h>
+#include <impm/grid/populated_cells.h>
 
 namespace impm
 {
@@ -19,6 +19,7 @@ namespace impm
                const Footprints<dim>     &footprints,
                const BackgroundGrid<dim> &grid,
                const Discretization<dim> &discretization,
+               const PopulatedCells<dim> &populated,
                double                     instant);
 
   /** Forces from outside, which do not depend on the increment: dead loads. */

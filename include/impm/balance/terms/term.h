@@ -6,9 +6,12 @@
 #include <impm/base/vector.h>
 
 #include <functional>
+#include <vector>
 
 namespace impm
 {
+  class ResidualNorm;
+
   /**
    * One effect in the balance of momentum over a step: a force on the nodes as
    * a function of their increment u, with its derivative and, if there is one,
@@ -40,14 +43,14 @@ namespace impm
     energy(const Vector &u) const = 0;
 
     /**
-     * The sum of the squares of what is added up in f(u) (N^2), which tells
-     * what round-off may leave of it.
+     * Adds the squares of what is added up in f(u) (N^2), by groups of the
+     * norm, which tells what round-off may leave of it.
      */
-    virtual double
-    square_of_parts(const Vector & /*u*/) const
-    {
-      return 0;
-    }
+    virtual void
+    add_squares_of_parts(const Vector & /*u*/,
+                         const ResidualNorm & /*norm*/,
+                         std::vector<double> & /*squares*/) const
+    {}
 
     /** force += f at the start of the step (N). Returns as evaluate(). */
     virtual bool

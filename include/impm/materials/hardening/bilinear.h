@@ -1,5 +1,5 @@
-#ifndef impm_materials_hardening_h
-#define impm_materials_hardening_h
+#ifndef impm_materials_hardening_bilinear_h
+#define impm_materials_hardening_bilinear_h
 
 #include <deal.II/base/parameter_handler.h>
 

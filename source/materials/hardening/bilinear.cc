@@ -1,6 +1,6 @@
 #include <deal.II/base/patterns.h>
 
-#include <impm/materials/hardening.h>
+#include <impm/materials/hardening/bilinear.h>
 
 #include <algorithm>
 #include <cstdlib>

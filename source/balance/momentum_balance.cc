@@ -18,14 +18,14 @@ namespace impm
                                         const RigidBodies<dim>    &rigid,
                                         const TimeIntegrator      &integrator)
     : grid(grid)
-    , constraints(scene, grid, rigid)
+    , constraints(scene.faces, grid, rigid)
     , response(scene, points)
     , scene(scene)
     , points(points)
     , integrator(integrator)
     , axisymmetric(scene.geometry == GeometryKind::axisymmetric)
     , n_gradients(response.kinematics.size)
-    , builder(make_footprint_builder(scene))
+    , builder(make_footprint_builder(scene.grid))
     , smoothing(scene.time.momentum_formulation ?
                   std::make_unique<VelocitySmoothing<dim>>(
                     points, prints, constraints, grid) :
@@ -76,7 +76,7 @@ namespace impm
     if (integrator.has_inertia() && grid.is_lagrangian && !nodes_have_motion)
       {
         interpolate_initial_velocity(
-          scene, points, prints, constraints, grid, mass, velocity);
+          scene.bodies, points, prints, constraints, grid, mass, velocity);
         nodes_have_motion = true;
       }
     if (smoothing)
@@ -293,11 +293,12 @@ namespace impm
   MomentumBalance<dim>::gather_load(const double instant, Vector &load)
   {
     load = 0;
-    if (scene.body_force)
+    if (scene.loads.body_force)
       add_body_force(instant, load);
-    add_point_tractions(scene, points, prints, instant, -1., load);
+    add_point_tractions(
+      scene.loads.tractions, points, prints, instant, -1., load);
     if (grid.is_lagrangian)
-      add_face_tractions(scene, grid, instant, -1., load);
+      add_face_tractions(scene.faces, scene.geometry, grid, instant, -1., load);
     load.compress(VectorOperation::add);
     constraints.condense_hanging(load);
   }
@@ -306,16 +307,16 @@ namespace impm
   void
   MomentumBalance<dim>::add_body_force(const double instant, Vector &load)
   {
-    scene.body_force->set_time(instant);
+    scene.loads.body_force->set_time(instant);
     dealii::Vector<double> value(dim);
     unsigned int           p = 0;
     point_forces.resize(points.size());
     for (const auto &particle : points.sorted.particles)
       {
-        scene.body_force->vector_value(scene.body_force_is_initial ?
-                                         points.initial_position(p) :
-                                         particle.get_location(),
-                                       value);
+        scene.loads.body_force->vector_value(scene.loads.body_force_is_initial ?
+                                               points.initial_position(p) :
+                                               particle.get_location(),
+                                             value);
         for (unsigned int c = 0; c < dim; ++c)
           point_forces[p][c] = -points.mass(p) * value[c];
         ++p;

@@ -15,9 +15,10 @@ namespace impm
     : kinematics(scene.geometry == GeometryKind::axisymmetric)
     , average(scene, points, kinematics)
     , points(points)
-    , n_stress(scene.keeps_stress() ? points.layout.n_components(
-                                        PointLayout::Kind::symmetric_tensor) :
-                                      0)
+    , n_stress(
+        points.offset_stress > 0 ?
+          points.layout.n_components(PointLayout::Kind::symmetric_tensor) :
+          0)
   {
     if (scene.geometry == GeometryKind::plane_stress)
       plane_stress.emplace();

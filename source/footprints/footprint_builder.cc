@@ -300,17 +300,17 @@ namespace impm
 
   template <int dim>
   std::unique_ptr<FootprintBuilder<dim>>
-  make_footprint_builder(const Scene<dim> &scene)
+  make_footprint_builder(const GridSpec<dim> &grid)
   {
-    if (scene.grid.method == GridMethod::gimp)
-      return std::make_unique<Boxes<dim>>(scene.grid.boxes_stretch);
-    if (scene.grid.method == GridMethod::lagrangian)
+    if (grid.method == GridMethod::gimp)
+      return std::make_unique<Boxes<dim>>(grid.boxes_stretch);
+    if (grid.method == GridMethod::lagrangian)
       return std::make_unique<GaussPoints<dim>>();
     return std::make_unique<Points<dim>>();
   }
 
   template std::unique_ptr<FootprintBuilder<2>>
-  make_footprint_builder(const Scene<2> &);
+  make_footprint_builder(const GridSpec<2> &);
   template std::unique_ptr<FootprintBuilder<3>>
-  make_footprint_builder(const Scene<3> &);
+  make_footprint_builder(const GridSpec<3> &);
 } // namespace impm

@@ -112,7 +112,7 @@ namespace impm
 
   template <int dim>
   void
-  interpolate_initial_velocity(const Scene<dim>           &scene,
+  interpolate_initial_velocity(const Bodies<dim>          &bodies,
                                const MaterialPoints<dim>  &points,
                                const Footprints<dim>      &footprints,
                                const StepConstraints<dim> &constraints,
@@ -127,7 +127,7 @@ namespace impm
       for (unsigned int e = cell.begin; e < cell.end; ++e)
         {
           const unsigned int p    = footprints.point[e];
-          const auto        &body = scene.bodies[points.body(p)];
+          const auto        &body = bodies[points.body(p)];
           if (!body.velocity)
             continue;
           for (unsigned int n = 0; n < Footprints<dim>::n_nodes; ++n)
@@ -155,7 +155,7 @@ namespace impm
                 Vector &,
                 Vector &);
   template void
-  interpolate_initial_velocity(const Scene<2> &,
+  interpolate_initial_velocity(const Bodies<2> &,
                                const MaterialPoints<2> &,
                                const Footprints<2> &,
                                const StepConstraints<2> &,
@@ -171,7 +171,7 @@ namespace impm
                 Vector &,
                 Vector &);
   template void
-  interpolate_initial_velocity(const Scene<3> &,
+  interpolate_initial_velocity(const Bodies<3> &,
                                const MaterialPoints<3> &,
                                const Footprints<3> &,
                                const StepConstraints<3> &,

@@ -5,10 +5,10 @@ namespace impm
   using namespace dealii;
 
   template <int dim>
-  StepConstraints<dim>::StepConstraints(const Scene<dim>          &scene,
+  StepConstraints<dim>::StepConstraints(const Faces<dim>          &faces,
                                         const BackgroundGrid<dim> &grid,
                                         const RigidBodies<dim>    &rigid)
-    : scene(scene)
+    : faces(faces)
     , grid(grid)
     , rigid(rigid)
   {
@@ -30,7 +30,7 @@ namespace impm
                                     const double       from,
                                     const double       to) const
   {
-    const auto &spec = scene.faces[face];
+    const auto &spec = faces[face];
     Point<dim>  place;
     place[face / 2]              = grid.face_position(face);
     const unsigned int component = spec.value->n_components == 1 ? 0 : face / 2;
@@ -62,7 +62,7 @@ namespace impm
                 {
                   const unsigned int face = cell->face(f)->boundary_id();
                   const auto dof = cell->face(f)->vertex_dof_index(v, c);
-                  if (scene.faces[face].constrained[c] &&
+                  if (faces[face].constrained[c] &&
                       !grid.hanging_nodes.is_constrained(dof))
                     hold(dof, face);
                 }
@@ -118,7 +118,7 @@ namespace impm
   {
     if (carrier >= 2 * dim)
       return rigid.displacement(carrier - 2 * dim, time, time + dt)[component];
-    const auto &face = scene.faces[carrier];
+    const auto &face = faces[carrier];
     if (!face.value)
       return 0;
     if (face.moves_grid && component == carrier / 2)
@@ -234,7 +234,7 @@ namespace impm
   {
     unsigned int wanted = 0;
     for (unsigned int f = 0; f < 2 * dim; ++f)
-      if (scene.faces[f].name == carrier)
+      if (faces[f].name == carrier)
         wanted = f + 1;
     for (unsigned int b = 0; b < rigid.size(); ++b)
       if (rigid.spec(b).name == carrier)

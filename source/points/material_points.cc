@@ -81,18 +81,6 @@ namespace impm
 
   namespace
   {
-    /** What the laws of the scene keep at each point, shared by name. */
-    template <int dim>
-    PointLayout
-    history_of(const Scene<dim> &scene)
-    {
-      PointLayout history(scene.geometry);
-      for (const auto &body : scene.bodies)
-        if (!body.rigid)
-          body.material->declare_history(history);
-      return history;
-    }
-
     unsigned int
     offset_or_zero(const PointLayout &layout, const std::string &name)
     {
@@ -102,94 +90,50 @@ namespace impm
 
   template <int dim>
   PointLayout
-  MaterialPoints<dim>::choose_layout(const Scene<dim> &scene)
+  history_of(const GeometryKind geometry, const Bodies<dim> &bodies)
   {
-    using Kind = PointLayout::Kind;
-    PointLayout layout(scene.geometry);
-    layout.add("body", Kind::scalar);
-    layout.add("initial_volume", Kind::scalar);
-    layout.add("deformation_gradient", Kind::tensor);
-
-    const auto &output = scene.output;
-    const bool  wants_initial_position =
-      std::count(output.point_fields.begin(),
-                 output.point_fields.end(),
-                 "displacement") > 0 ||
-      std::any_of(output.probes.begin(),
-                  output.probes.end(),
-                  [](const ProbeSpec &probe) {
-                    return probe.field == "displacement" || probe.where;
-                  }) ||
-      std::any_of(scene.references.begin(),
-                  scene.references.end(),
-                  [](const ReferenceSpec<dim> &reference) {
-                    return !reference.field.empty();
-                  });
-    if (scene.has_inertia())
-      layout.add("velocity", Kind::vector);
-    if (scene.time.keeps_acceleration)
-      layout.add("acceleration", Kind::vector);
-    if (scene.keeps_stress())
-      layout.add("stress", Kind::symmetric_tensor);
-    if (scene.has_inertia() && scene.time.transfer == TransferKind::apic)
-      for (unsigned int d = 0; d < dim; ++d)
-        layout.add(std::string("velocity_gradient_") + "xyz"[d], Kind::vector);
-    if (wants_initial_position || scene.body_force_is_initial ||
-        std::any_of(scene.tractions.begin(),
-                    scene.tractions.end(),
-                    [](const auto &traction) { return traction.is_initial; }))
-      layout.add("initial_position", Kind::vector);
-    if (scene.grid.method == GridMethod::gimp ||
-        std::any_of(output.probes.begin(),
-                    output.probes.end(),
-                    [](const ProbeSpec &probe) {
-                      return probe.kind == ProbeSpec::Kind::extent;
-                    }))
-      layout.add("initial_domain", Kind::vector);
-
-    for (const auto &traction : scene.tractions)
-      layout.add(traction_field(traction), Kind::scalar);
-
-    // The history comes last, in one block.
-    const PointLayout history = history_of(scene);
-    for (const auto &field : history.fields())
-      layout.add(field.name, field.kind);
-    return layout;
+    PointLayout history(geometry);
+    for (const auto &body : bodies)
+      if (!body.rigid)
+        body.material->declare_history(history);
+    return history;
   }
 
   template <int dim>
-  MaterialPoints<dim>::MaterialPoints(const Scene<dim>          &scene,
+  MaterialPoints<dim>::MaterialPoints(const PointLayout         &layout,
+                                      const Bodies<dim>         &bodies,
+                                      const Tractions<dim>      &tractions,
                                       const BackgroundGrid<dim> &grid)
-    : layout(choose_layout(scene))
+    : layout(layout)
     , sorted(grid, layout.size())
     , offset_deformation(layout.offset("deformation_gradient"))
-    , offset_history(layout.size() - history_of(scene).size())
+    , offset_history(layout.size() - history_of(layout.geometry, bodies).size())
     , offset_velocity(offset_or_zero(layout, "velocity"))
     , offset_acceleration(offset_or_zero(layout, "acceleration"))
     , offset_affine(offset_or_zero(layout, "velocity_gradient_x"))
     , offset_stress(offset_or_zero(layout, "stress"))
     , offset_initial_position(offset_or_zero(layout, "initial_position"))
-    , history_layout(history_of(scene))
+    , history_layout(history_of(layout.geometry, bodies))
     , communicator(grid.communicator)
   {
     Tensor<2, 3> identity;
     for (unsigned int d = 0; d < 3; ++d)
       identity[d][d] = 1;
 
-    for (unsigned int b = 0; b < scene.bodies.size(); ++b)
+    for (unsigned int b = 0; b < bodies.size(); ++b)
       {
-        const auto &body = scene.bodies[b];
+        const auto &body = bodies[b];
         materials.push_back(body.material);
         if (body.rigid)
           continue;
         sorted.insert(
-          seed_body(scene, body, grid),
+          seed_body(bodies, body, layout.geometry, grid),
           [&](const Seed<dim> &seed, double *values) {
             std::fill_n(values, layout.size(), 0.);
             values[layout.offset("body")]           = b;
             values[layout.offset("initial_volume")] = seed.volume;
             layout.store_tensor(identity, values + offset_deformation);
-            if (scene.has_inertia())
+            if (offset_velocity > 0)
               {
                 dealii::Vector<double> velocity(dim);
                 if (body.velocity)
@@ -216,7 +160,7 @@ namespace impm
                 if (layout.has("initial_domain"))
                   values[layout.offset("initial_domain") + d] = seed.domain[d];
               }
-            for (const auto &traction : scene.tractions)
+            for (const auto &traction : tractions)
               if (traction.body == body.name)
                 values[layout.offset(traction_field(traction))] =
                   traction_area(traction, seed);
@@ -224,7 +168,7 @@ namespace impm
           });
       }
     sort();
-    check_tractions(scene, *this);
+    check_tractions(tractions, *this);
   }
 
   template <int dim>
@@ -274,6 +218,10 @@ namespace impm
   largest_speed(const MaterialPoints<2> &);
   template double
   largest_speed(const MaterialPoints<3> &);
+  template PointLayout
+  history_of(GeometryKind, const Bodies<2> &);
+  template PointLayout
+  history_of(GeometryKind, const Bodies<3> &);
   template class MaterialPoints<2>;
   template class MaterialPoints<3>;
 } // namespace impm

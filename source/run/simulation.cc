@@ -6,6 +6,7 @@
 #include <impm/output/summary.h>
 #include <impm/run/checkpoint.h>
 #include <impm/run/simulation.h>
+#include <impm/scene/layout_choice.h>
 
 #include <filesystem>
 #include <sstream>
@@ -23,14 +24,19 @@ namespace impm
     , silence(std::cout, false)
     , timer(silence, TimerOutput::never, TimerOutput::wall_times)
     , grid(scene.grid, communicator)
-    , points(scene, grid)
-    , rigid(scene, grid)
+    , points(choose_layout(scene), scene.bodies, scene.loads.tractions, grid)
+    , rigid(scene.bodies, scene.geometry, grid)
     , integrator(make_time_integrator(scene.time))
     , balance(scene, grid, points, rigid, *integrator)
-    , step_solver(scene, balance, *integrator, timer)
+    , step_solver(scene.solver, scene.bodies, balance, *integrator, timer)
     , pictures(scene.output, points, rigid, balance)
-    , history(scene, points, rigid, balance)
-    , reference(scene, points, history)
+    , history(scene.output, scene.faces, scene.bodies, points, rigid, balance)
+    , reference(scene.references,
+                scene.bodies,
+                scene.output,
+                scene.time,
+                points,
+                history)
     , console(verbosity, Utilities::MPI::this_mpi_process(communicator) == 0)
     , step_size(scene.time.step)
   {
@@ -44,14 +50,16 @@ namespace impm
   Simulation<dim>::describe()
   {
     std::ostringstream text;
-    text << (scene.title.empty() ? "scene" : scene.title) << '\n'
+    text << (scene.general.title.empty() ? "scene" : scene.general.title)
+         << '\n'
          << "  grid: " << grid.triangulation.n_global_active_cells()
          << " cells, " << grid.dof_handler.n_dofs() << " unknowns\n"
          << "  points: " << points.sorted.n_global() << '\n';
-    const auto counts = count_points_under_tractions(scene, points);
+    const auto counts =
+      count_points_under_tractions(scene.loads.tractions, points);
     for (unsigned int t = 0; t < counts.size(); ++t)
-      text << "  traction " << scene.tractions[t].name << ": on " << counts[t]
-           << " points\n";
+      text << "  traction " << scene.loads.tractions[t].name << ": on "
+           << counts[t] << " points\n";
     text << "  fields of a point:\n";
     for (const auto &field : points.layout.fields())
       text << "    " << field.name << " (" << field.n_components << ")\n";

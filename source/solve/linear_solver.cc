@@ -86,7 +86,7 @@ namespace impm
   void
   LinearSolver<dim>::update_preconditioner()
   {
-    if (spec.preconditioner == "Jacobi")
+    if (spec.preconditioner == PreconditionerKind::jacobi)
       {
         balance.diagonal(inverse_diagonal);
         for (unsigned int i = 0; i < inverse_diagonal.locally_owned_size(); ++i)
@@ -95,7 +95,7 @@ namespace impm
       }
     else if (solves_for_momentum())
       balance.inverse_mass(inverse_diagonal);
-    else if (spec.preconditioner == "AMG")
+    else if (spec.preconditioner == PreconditionerKind::amg)
       {
         TimerOutput::Scope scope(timer, "preconditioner");
         // ML keeps the address of the modes. Rotations are modes of plane and
@@ -154,14 +154,15 @@ namespace impm
         quotient.vmult(dst, src);
     };
     const auto run = [&](auto &solver) {
-      if (spec.preconditioner == "AMG")
+      if (spec.preconditioner == PreconditionerKind::amg)
         solver.solve(tangent, x, b, amg);
-      else if (spec.preconditioner == "Jacobi" || solves_for_momentum())
+      else if (spec.preconditioner == PreconditionerKind::jacobi ||
+               solves_for_momentum())
         solver.solve(tangent, x, b, JacobiPreconditioner{inverse_diagonal});
       else
         solver.solve(tangent, x, b, PreconditionIdentity());
     };
-    if (spec.linear_solver == "CG")
+    if (spec.linear_solver == LinearSolverKind::cg)
       {
         SolverCG<Vector> solver(control);
         run(solver);
@@ -220,7 +221,7 @@ namespace impm
         balance.assemble(matrix);
         matrix_is_current = true;
       }
-    if (spec.linear_solver != "direct")
+    if (spec.linear_solver != LinearSolverKind::direct)
       update_preconditioner();
   }
 
@@ -229,7 +230,7 @@ namespace impm
   LinearSolver<dim>::solve(Vector &x, const Vector &b, const double tolerance)
   {
     x = 0;
-    if (spec.linear_solver == "direct")
+    if (spec.linear_solver == LinearSolverKind::direct)
       {
         solve_directly(x, b);
         return 1;

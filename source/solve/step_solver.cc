@@ -12,26 +12,25 @@ namespace impm
     /** Whether an iterate can be judged by the energy of its increment. */
     template <int dim>
     bool
-    has_potential(const Scene<dim> &scene)
+    has_potential(const SolverSpec &spec, const Bodies<dim> &bodies)
     {
-      return scene.solver.tangent != TangentKind::difference_quotient &&
-             std::all_of(scene.bodies.begin(),
-                         scene.bodies.end(),
-                         [](const auto &body) {
-                           return body.rigid || body.material->has_potential();
-                         });
+      return spec.tangent != TangentKind::difference_quotient &&
+             std::all_of(bodies.begin(), bodies.end(), [](const auto &body) {
+               return body.rigid || body.material->has_potential();
+             });
     }
   } // namespace
 
   template <int dim>
-  StepSolver<dim>::StepSolver(const Scene<dim>     &scene,
+  StepSolver<dim>::StepSolver(const SolverSpec     &spec,
+                              const Bodies<dim>    &bodies,
                               MomentumBalance<dim> &balance,
                               const TimeIntegrator &integrator,
                               TimerOutput          &timer)
-    : linear_solver(scene.solver, balance, timer)
+    : linear_solver(spec, balance, timer)
     , balance(balance)
     , integrator(integrator)
-    , newton(scene.solver, balance, linear_solver, has_potential(scene), timer)
+    , newton(spec, balance, linear_solver, has_potential(spec, bodies), timer)
   {}
 
   template <int dim>

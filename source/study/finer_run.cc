@@ -72,8 +72,9 @@ namespace impm
                       read_scene<dim>(file.handler(), line.parameter_file),
                       false};
             task.scene.references.clear();
-            const auto columns = history_columns(task.scene);
-            auto       wanted  = spec.columns;
+            const auto columns =
+              history_columns<dim>(task.scene.output, task.scene.geometry);
+            auto wanted = spec.columns;
             wanted.push_back(spec.against);
             for (const auto &column : wanted)
               if (std::count(columns.begin(), columns.end(), column) == 0)

@@ -9,6 +9,7 @@
 #include <impm/balance/velocity_smoothing.h>
 #include <impm/footprints/footprint_builder.h>
 #include <impm/grid/step_constraints.h>
+#include <impm/scene/scene.h>
 #include <impm/time/time_integrator.h>
 
 #include <memory>

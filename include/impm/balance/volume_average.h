@@ -3,6 +3,7 @@
 
 #include <impm/balance/kinematics.h>
 #include <impm/points/material_points.h>
+#include <impm/scene/scene.h>
 
 #include <vector>
 

@@ -24,10 +24,10 @@ namespace impm
     unsigned int n_limited_boxes = 0;
   };
 
-  /** The builder of the scene's method: every one stands in here. */
+  /** The builder of the grid's method: every one stands in here. */
   template <int dim>
   std::unique_ptr<FootprintBuilder<dim>>
-  make_footprint_builder(const Scene<dim> &scene);
+  make_footprint_builder(const GridSpec<dim> &grid);
 } // namespace impm
 
 #endif

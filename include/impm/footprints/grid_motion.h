@@ -27,7 +27,7 @@ namespace impm
    */
   template <int dim>
   void
-  interpolate_initial_velocity(const Scene<dim>           &scene,
+  interpolate_initial_velocity(const Bodies<dim>          &bodies,
                                const MaterialPoints<dim>  &points,
                                const Footprints<dim>      &footprints,
                                const StepConstraints<dim> &constraints,

@@ -14,7 +14,7 @@
 #include <deal.II/lac/affine_constraints.h>
 #include <deal.II/lac/la_parallel_vector.h>
 
-#include <impm/scene/scene.h>
+#include <impm/input/sections/grid.h>
 
 #include <memory>
 

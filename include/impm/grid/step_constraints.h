@@ -3,6 +3,7 @@
 
 #include <impm/grid/background_grid.h>
 #include <impm/grid/rigid_bodies.h>
+#include <impm/input/sections/boundary_conditions.h>
 
 #include <string>
 #include <vector>
@@ -17,7 +18,7 @@ namespace impm
   class StepConstraints
   {
   public:
-    StepConstraints(const Scene<dim>          &scene,
+    StepConstraints(const Faces<dim>          &faces,
                     const BackgroundGrid<dim> &grid,
                     const RigidBodies<dim>    &rigid);
 
@@ -92,7 +93,7 @@ namespace impm
                double       time,
                double       dt) const;
 
-    const Scene<dim>          &scene;
+    const Faces<dim>          &faces;
     const BackgroundGrid<dim> &grid;
     const RigidBodies<dim>    &rigid;
 

@@ -4,8 +4,9 @@
 #include <deal.II/particles/particle_handler.h>
 
 #include <impm/grid/background_grid.h>
+#include <impm/input/sections/bodies.h>
+#include <impm/input/sections/loads.h>
 #include <impm/points/point_layout.h>
-#include <impm/scene/scene.h>
 #include <impm/scene/seeding.h>
 
 #include <functional>
@@ -52,6 +53,11 @@ namespace impm
     std::string                lost;
   };
 
+  /** What the laws of the bodies keep at each point, shared by name. */
+  template <int dim>
+  PointLayout
+  history_of(GeometryKind geometry, const Bodies<dim> &bodies);
+
   /**
    * The deformable bodies: points that carry mass, motion, deformation and
    * history, in the order of the cells that they lie in.
@@ -60,12 +66,15 @@ namespace impm
   class MaterialPoints
   {
   public:
-    /** Decides which fields the points of this scene carry. */
-    static PointLayout
-    choose_layout(const Scene<dim> &scene);
-
-    /** Fills the bodies of the scene with points. Collective. */
-    MaterialPoints(const Scene<dim> &scene, const BackgroundGrid<dim> &grid);
+    /**
+     * Fills the bodies with points that carry a layout, whose history comes
+     * last. Throws InputError where seed_body() or check_tractions() does.
+     * Collective.
+     */
+    MaterialPoints(const PointLayout         &layout,
+                   const Bodies<dim>         &bodies,
+                   const Tractions<dim>      &tractions,
+                   const BackgroundGrid<dim> &grid);
 
     /** Sorts the points into cells and takes their addresses. Collective. */
     void

@@ -8,6 +8,7 @@
 #include <impm/app/console.h>
 #include <impm/output/history.h>
 #include <impm/output/pictures.h>
+#include <impm/scene/scene.h>
 #include <impm/solve/step_solver.h>
 #include <impm/study/reference.h>
 

@@ -76,15 +76,16 @@ namespace impm
     bool
     solves_for_momentum() const
     {
-      return balance.in_momentum() && spec.preconditioner == "none";
+      return balance.in_momentum() &&
+             spec.preconditioner == PreconditionerKind::none;
     }
 
     bool
     needs_matrix() const
     {
-      return spec.linear_solver == "direct" ||
+      return spec.linear_solver == LinearSolverKind::direct ||
              spec.tangent == TangentKind::matrix ||
-             spec.preconditioner == "AMG";
+             spec.preconditioner == PreconditionerKind::amg;
     }
 
     const SolverSpec       &spec;

@@ -15,7 +15,8 @@ namespace impm
   public:
     using Result = typename NewtonSolver<dim>::Result;
 
-    StepSolver(const Scene<dim>     &scene,
+    StepSolver(const SolverSpec     &spec,
+               const Bodies<dim>    &bodies,
                MomentumBalance<dim> &balance,
                const TimeIntegrator &integrator,
                dealii::TimerOutput  &timer);

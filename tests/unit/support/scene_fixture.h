@@ -5,6 +5,7 @@
 #include <deal.II/base/timer.h>
 
 #include <impm/footprints/transfer.h>
+#include <impm/scene/layout_choice.h>
 #include <impm/solve/step_solver.h>
 
 #include <unistd.h>
@@ -168,11 +169,11 @@ namespace impm
               dealii::TimerOutput::never,
               dealii::TimerOutput::wall_times)
       , grid(scene.grid, communicator)
-      , points(scene, grid)
-      , rigid(scene, grid)
+      , points(choose_layout(scene), scene.bodies, scene.loads.tractions, grid)
+      , rigid(scene.bodies, scene.geometry, grid)
       , integrator(make_time_integrator(scene.time))
       , balance(scene, grid, points, rigid, *integrator)
-      , step_solver(scene, balance, *integrator, timer)
+      , step_solver(scene.solver, scene.bodies, balance, *integrator, timer)
     {}
 
     Vector

@@ -2,6 +2,8 @@
 #define impm_balance_terms_face_traction_h
 
 #include <impm/grid/background_grid.h>
+#include <impm/input/sections/boundary_conditions.h>
+#include <impm/points/point_layout.h>
 
 namespace impm
 {
@@ -12,7 +14,8 @@ namespace impm
    */
   template <int dim>
   void
-  add_face_tractions(const Scene<dim>          &scene,
+  add_face_tractions(const Faces<dim>          &faces,
+                     GeometryKind               geometry,
                      const BackgroundGrid<dim> &grid,
                      double                     instant,
                      double                     factor,

@@ -1,0 +1,25 @@
+#ifndef impm_input_sections_materials_h
+#define impm_input_sections_materials_h
+
+#include <impm/input/parameter_file.h>
+#include <impm/materials/material.h>
+#include <impm/points/point_layout.h>
+
+#include <map>
+#include <memory>
+#include <string>
+
+namespace impm
+{
+  using NamedMaterials = std::map<std::string, std::shared_ptr<Material>>;
+
+  void
+  declare_materials(dealii::ParameterHandler    &prm,
+                    const ParameterFile::Chosen &chosen);
+
+  /** Also checks what a law can be asked for. */
+  NamedMaterials
+  read_materials(dealii::ParameterHandler &prm, GeometryKind geometry);
+} // namespace impm
+
+#endif

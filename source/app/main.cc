@@ -39,7 +39,10 @@ namespace
       directory = "output/" + name;
 
     Simulation<dim>        simulation(scene, line.verbosity, MPI_COMM_WORLD);
-    const FinerRunner<dim> finer(scene, line, directory, MPI_COMM_WORLD);
+    const FinerRunner<dim> finer(scene.references,
+                                 line,
+                                 directory,
+                                 MPI_COMM_WORLD);
     simulation.describe();
     if (line.action == CommandLine::Action::check)
       return;

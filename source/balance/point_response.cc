@@ -11,8 +11,7 @@ namespace impm
   using namespace dealii;
 
   template <int dim>
-  PointResponse<dim>::PointResponse(const std::vector<BodySpec<dim>> &bodies,
-                                    const bool                 keeps_stress,
+  PointResponse<dim>::PointResponse(const Bodies<dim>         &bodies,
                                     const MaterialPoints<dim> &points,
                                     const double               dt,
                                     unsigned long             &n_evaluations)
@@ -21,9 +20,10 @@ namespace impm
     , points(points)
     , dt(dt)
     , n_evaluations(n_evaluations)
-    , n_stress(keeps_stress ? points.layout.n_components(
-                                PointLayout::Kind::symmetric_tensor) :
-                              0)
+    , n_stress(
+        points.offset_stress > 0 ?
+          points.layout.n_components(PointLayout::Kind::symmetric_tensor) :
+          0)
   {
     if (points.layout.geometry == GeometryKind::plane_stress)
       plane_stress.emplace();
@@ -62,18 +62,15 @@ namespace impm
   bool
   PointResponse<dim>::evaluate_law(Batch &batch, const bool with_tangent)
   {
-    const unsigned int                            n = batch.size;
-    typename Batch::template List<Tensor<2, 3>>   start, total;
-    typename Batch::template List<const double *> history;
-    typename Batch::template List<double *>       trial;
+    const unsigned int n = batch.size;
     for (unsigned int i = 0; i < n; ++i)
       {
         const unsigned int p      = batch.first + i;
         const double      *fields = points.fields(p);
-        start[i] =
+        batch.start[i] =
           points.layout.load_tensor(fields + points.offset_deformation);
-        history[i] = fields + points.offset_history;
-        trial[i]   = &histories[p * points.history_size()];
+        batch.history[i]       = fields + points.offset_history;
+        batch.trial_history[i] = &histories[p * points.history_size()];
         batch.increment[i] =
           kinematics.deformation(&gradients[p * kinematics.size]);
       }
@@ -82,10 +79,10 @@ namespace impm
         for (unsigned int i = 0; i < n; ++i)
           {
             if (!plane_stress->evaluate(*batch.law,
-                                        start[i],
+                                        batch.start[i],
                                         dt,
-                                        history[i],
-                                        trial[i],
+                                        batch.history[i],
+                                        batch.trial_history[i],
                                         batch.increment[i],
                                         batch.response[i],
                                         with_tangent ? batch.spatial[i].data() :
@@ -100,13 +97,13 @@ namespace impm
         batch.increment[i] =
           average.average(batch.first + i, batch.increment[i]);
     for (unsigned int i = 0; i < n; ++i)
-      total[i] = batch.increment[i] * start[i];
+      batch.total[i] = batch.increment[i] * batch.start[i];
     if (!batch.law->evaluate({n,
                               batch.increment.data(),
-                              total.data(),
+                              batch.total.data(),
                               dt,
-                              history.data(),
-                              trial.data()},
+                              batch.history.data(),
+                              batch.trial_history.data()},
                              with_tangent,
                              batch.response.data()))
       return false;
@@ -127,14 +124,15 @@ namespace impm
                                  const bool with_tangent,
                                  double    &potential)
   {
-    const unsigned int n_g = kinematics.size;
-    const bool linearized  = batch.law->form() == Material::Form::linearized;
-    const bool averaged    = average.includes(batch.first);
-    for (unsigned int i = 0; i < batch.size; ++i)
-      potential +=
-        points.initial_volume(batch.first + i) * batch.response[i].potential;
+    const unsigned int n_g = kinematics.size, n = batch.size;
+    const bool linearized = batch.law->form() == Material::Form::linearized;
+    const auto volume     = [&](const unsigned int i) {
+      return points.initial_volume(batch.first + i);
+    };
+    for (unsigned int i = 0; i < n; ++i)
+      potential += volume(i) * batch.response[i].potential;
     if (n_stress > 0)
-      for (unsigned int i = 0; i < batch.size; ++i)
+      for (unsigned int i = 0; i < n; ++i)
         {
           // that of a linearized law counts from the volume at the start
           const double growth =
@@ -143,30 +141,31 @@ namespace impm
             growth * batch.response[i].kirchhoff_stress,
             &end_stresses[(batch.first + i) * n_stress]);
         }
-    for (unsigned int i = 0; i < batch.size; ++i)
-      {
-        const unsigned int p      = batch.first + i;
-        const double       volume = points.initial_volume(p);
-        const Tensor<2, 3> inverse =
-          linearized ? Tensor<2, 3>(unit_symmetric_tensor<3>()) :
-                       invert(kinematics.deformation(&gradients[p * n_g]));
-        if (averaged)
-          average.take_out_pressure(p,
-                                    volume,
-                                    inverse,
-                                    batch.response[i],
-                                    with_tangent ? batch.spatial[i].data() :
-                                                   nullptr);
-        kinematics.carry_back_stress(batch.response[i].kirchhoff_stress,
-                                     inverse,
-                                     volume,
-                                     &stresses[p * n_g]);
-        if (with_tangent)
-          kinematics.carry_back_tangent(batch.spatial[i].data(),
-                                        inverse,
-                                        volume,
-                                        &tangents[p * n_g * n_g]);
-      }
+    if (linearized)
+      batch.inverse.fill(unit_symmetric_tensor<3>());
+    else
+      for (unsigned int i = 0; i < n; ++i)
+        batch.inverse[i] =
+          invert(kinematics.deformation(&gradients[(batch.first + i) * n_g]));
+    if (average.includes(batch.first))
+      for (unsigned int i = 0; i < n; ++i)
+        average.take_out_pressure(batch.first + i,
+                                  volume(i),
+                                  batch.inverse[i],
+                                  batch.response[i],
+                                  with_tangent ? batch.spatial[i].data() :
+                                                 nullptr);
+    for (unsigned int i = 0; i < n; ++i)
+      kinematics.carry_back_stress(batch.response[i].kirchhoff_stress,
+                                   batch.inverse[i],
+                                   volume(i),
+                                   &stresses[(batch.first + i) * n_g]);
+    if (with_tangent)
+      for (unsigned int i = 0; i < n; ++i)
+        kinematics.carry_back_tangent(batch.spatial[i].data(),
+                                      batch.inverse[i],
+                                      volume(i),
+                                      &tangents[(batch.first + i) * n_g * n_g]);
   }
 
   template <int dim>

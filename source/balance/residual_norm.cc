@@ -13,10 +13,10 @@ namespace impm
     /** Stiffness times the size of a cell, Sulsky & Kaul's unit of forces. */
     template <int dim>
     double
-    force_of_cell(const std::vector<BodySpec<dim>> &bodies,
-                  const MaterialPoints<dim>        &points,
-                  const Footprints<dim>            &footprints,
-                  const MPI_Comm                    communicator)
+    force_of_cell(const Bodies<dim>         &bodies,
+                  const MaterialPoints<dim> &points,
+                  const Footprints<dim>     &footprints,
+                  const MPI_Comm             communicator)
     {
       double stiffness = 0, volume = std::numeric_limits<double>::max();
       for (const auto &body : bodies)
@@ -68,12 +68,12 @@ namespace impm
   } // namespace
 
   template <int dim>
-  ResidualNorm::ResidualNorm(const ResidualScale               scale,
-                             const double                      dt,
-                             const std::vector<BodySpec<dim>> &bodies,
-                             const MaterialPoints<dim>        &points,
-                             const Footprints<dim>            &footprints,
-                             const Discretization<dim>        &discretization)
+  ResidualNorm::ResidualNorm(const ResidualScale        scale,
+                             const double               dt,
+                             const Bodies<dim>         &bodies,
+                             const MaterialPoints<dim> &points,
+                             const Footprints<dim>     &footprints,
+                             const Discretization<dim> &discretization)
     : is_by_body(scale == ResidualScale::body)
     , communicator(discretization.communicator)
   {
@@ -172,13 +172,13 @@ namespace impm
 
   template ResidualNorm::ResidualNorm(ResidualScale,
                                       double,
-                                      const std::vector<BodySpec<2>> &,
+                                      const Bodies<2> &,
                                       const MaterialPoints<2> &,
                                       const Footprints<2> &,
                                       const Discretization<2> &);
   template ResidualNorm::ResidualNorm(ResidualScale,
                                       double,
-                                      const std::vector<BodySpec<3>> &,
+                                      const Bodies<3> &,
                                       const MaterialPoints<3> &,
                                       const Footprints<3> &,
                                       const Discretization<3> &);

@@ -60,11 +60,7 @@ namespace impm
                   time,
                   dt,
                   norm.unit_strain_forces)
-    , response(scene.bodies,
-               scene.keeps_stress(),
-               points,
-               dt,
-               counts.stress_evaluations)
+    , response(scene.bodies, points, dt, counts.stress_evaluations)
     , motion(integrator.has_inertia() ? gather_motion(points,
                                                       scene.bodies,
                                                       footprints,
@@ -152,10 +148,11 @@ namespace impm
           scene.stabilization.ghost_penalty));
         stabilization = terms.back().get();
       }
-    if (scene.has_loads())
+    if (has_loads(scene.loads, scene.faces))
       {
         const auto at = [&](const double instant) {
-          return gather_loads(scene,
+          return gather_loads(scene.loads,
+                              scene.faces,
                               points,
                               footprints,
                               grid,

@@ -8,9 +8,9 @@ namespace impm
   using namespace dealii;
 
   template <int dim>
-  VolumeAverage<dim>::VolumeAverage(const std::vector<BodySpec<dim>> &bodies,
-                                    const MaterialPoints<dim>        &points,
-                                    const Kinematics<dim> &kinematics)
+  VolumeAverage<dim>::VolumeAverage(const Bodies<dim>         &bodies,
+                                    const MaterialPoints<dim> &points,
+                                    const Kinematics<dim>     &kinematics)
     : points(points)
     , kinematics(kinematics)
   {

@@ -43,9 +43,9 @@ namespace impm
     /** The same of a Lagrangian grid before its first step. */
     template <int dim>
     void
-    interpolate_initial_velocity(const std::vector<BodySpec<dim>> &bodies,
-                                 const MaterialPoints<dim>        &points,
-                                 const Footprints<dim>            &footprints,
+    interpolate_initial_velocity(const Bodies<dim>         &bodies,
+                                 const MaterialPoints<dim> &points,
+                                 const Footprints<dim>     &footprints,
                                  const Discretization<dim> &discretization,
                                  Vector                    &momentum)
     {
@@ -72,12 +72,12 @@ namespace impm
 
   template <int dim>
   NodalMotion
-  gather_motion(const MaterialPoints<dim>        &points,
-                const std::vector<BodySpec<dim>> &bodies,
-                const Footprints<dim>            &footprints,
-                const StepConstraints<dim>       &constraints,
-                const BackgroundGrid<dim>        &grid,
-                const Discretization<dim>        &discretization)
+  gather_motion(const MaterialPoints<dim>  &points,
+                const Bodies<dim>          &bodies,
+                const Footprints<dim>      &footprints,
+                const StepConstraints<dim> &constraints,
+                const BackgroundGrid<dim>  &grid,
+                const Discretization<dim>  &discretization)
   {
     // Lumped; hanging nodes hand theirs to their masters, so that the sums
     // over all nodes stay those over all points.
@@ -143,14 +143,14 @@ namespace impm
 
   template NodalMotion
   gather_motion(const MaterialPoints<2> &,
-                const std::vector<BodySpec<2>> &,
+                const Bodies<2> &,
                 const Footprints<2> &,
                 const StepConstraints<2> &,
                 const BackgroundGrid<2> &,
                 const Discretization<2> &);
   template NodalMotion
   gather_motion(const MaterialPoints<3> &,
-                const std::vector<BodySpec<3>> &,
+                const Bodies<3> &,
                 const Footprints<3> &,
                 const StepConstraints<3> &,
                 const BackgroundGrid<3> &,

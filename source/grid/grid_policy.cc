@@ -65,8 +65,7 @@ namespace impm
 
   template <int dim>
   std::unique_ptr<GridPolicy<dim>>
-  make_grid_policy(const GridSpec<dim>                      &spec,
-                   const std::array<FaceSpec<dim>, 2 * dim> &faces)
+  make_grid_policy(const GridSpec<dim> &spec, const Faces<dim> &faces)
   {
     if (spec.method == GridMethod::lagrangian)
       return std::make_unique<Lagrangian<dim>>();
@@ -94,9 +93,9 @@ namespace impm
   }
 
   template std::unique_ptr<GridPolicy<2>>
-  make_grid_policy(const GridSpec<2> &, const std::array<FaceSpec<2>, 4> &);
+  make_grid_policy(const GridSpec<2> &, const Faces<2> &);
   template std::unique_ptr<GridPolicy<3>>
-  make_grid_policy(const GridSpec<3> &, const std::array<FaceSpec<3>, 6> &);
+  make_grid_policy(const GridSpec<3> &, const Faces<3> &);
   template void
   adapt_grid(BackgroundGrid<2> &, MaterialPoints<2> &, RigidBodies<2> &);
   template void

@@ -6,18 +6,19 @@ namespace impm
   using namespace dealii;
 
   template <int dim>
-  RigidBodies<dim>::RigidBodies(const Scene<dim>          &scene,
+  RigidBodies<dim>::RigidBodies(const Bodies<dim>         &specs,
+                                const GeometryKind         geometry,
                                 const BackgroundGrid<dim> &grid)
   {
     std::vector<BoundingBox<dim>> boxes;
-    for (const auto &spec : scene.bodies)
+    for (const auto &spec : specs)
       if (spec.rigid)
         {
           auto points = std::make_unique<SortedParticles<dim>>(grid, 0);
           if (grid.is_lagrangian)
             boxes.push_back(*spec.shape->bounding_box());
           else
-            points->insert(seed_body(scene, spec, grid));
+            points->insert(seed_body(specs, spec, geometry, grid));
           points->sort();
           bodies.push_back({&spec, std::move(points)});
         }

@@ -25,7 +25,7 @@ namespace impm
 
   template <int dim>
   StepConstraints<dim>::StepConstraints(
-    const Faces               &faces,
+    const Faces<dim>          &faces,
     const BackgroundGrid<dim> &grid,
     const Discretization<dim> &discretization,
     const RigidBodies<dim>    &rigid,

@@ -2,6 +2,7 @@
 #include <deal.II/base/utilities.h>
 
 #include <impm/base/exceptions.h>
+#include <impm/base/names.h>
 #include <impm/input/parameter_file.h>
 #include <impm/input/parameter_messages.h>
 
@@ -161,10 +162,7 @@ namespace impm
       {
         const auto before   = std::move(prm);
         prm                 = std::make_unique<dealii::ParameterHandler>();
-        const Chosen chosen = [&](const std::string &path,
-                                  const std::string &fallback) {
-          return look_up(*before, path, fallback);
-        };
+        const Chosen chosen = chosen_in(*before);
         declare(*prm, chosen);
         if (reading == n_readings)
           {
@@ -318,6 +316,14 @@ namespace impm
                            place;
   }
 
+  ParameterFile::Chosen
+  chosen_in(dealii::ParameterHandler &prm)
+  {
+    return [&prm](const std::string &path, const std::string &fallback) {
+      return look_up(prm, path, fallback);
+    };
+  }
+
   std::vector<std::string>
   split_names(const std::string &list)
   {
@@ -358,6 +364,14 @@ namespace impm
     leave();
   }
 
+  void
+  declare_text(dealii::ParameterHandler &prm,
+               const std::string        &entry,
+               const std::string        &documentation)
+  {
+    prm.declare_entry(entry, "", dealii::Patterns::Anything(), documentation);
+  }
+
   std::vector<double>
   get_numbers(const dealii::ParameterHandler &prm,
               const std::string              &entry,
@@ -370,5 +384,16 @@ namespace impm
                        "found '" + prm.get(entry) + "', allowed are " +
                          std::to_string(n) + " numbers");
     return values;
+  }
+
+  void
+  require_name(const std::vector<std::string> &allowed,
+               const std::string              &found,
+               const std::string              &entry)
+  {
+    if (std::count(allowed.begin(), allowed.end(), found) == 0)
+      throw InputError(entry,
+                       "found '" + found + "', allowed are: " +
+                         (allowed.empty() ? "none" : join(allowed, ", ")));
   }
 } // namespace impm

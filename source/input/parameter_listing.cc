@@ -1,3 +1,4 @@
+#include <impm/base/names.h>
 #include <impm/input/parameter_listing.h>
 #include <impm/input/parameter_messages.h>
 #include <impm/materials/list.h>
@@ -12,16 +13,6 @@ namespace impm
 {
   namespace
   {
-    template <typename Entry>
-    std::string
-    names_of(const std::vector<Entry> &entries)
-    {
-      std::string names;
-      for (const auto &entry : entries)
-        names += (names.empty() ? "" : ",") + entry.name;
-      return names;
-    }
-
     /**
      * Choices under which every entry is declared: lists hold an item of each
      * kind, called after it, and an item is what it is called.
@@ -31,9 +22,9 @@ namespace impm
     {
       static const std::map<std::string, std::string> choices = {
         {"Geometry/Kind", "3D"},
-        {"Geometry/Shapes", names_of(shape_list<3>())},
+        {"Geometry/Shapes", join(names_of(shape_list<3>()), ",")},
         {"Grid/Local refinements", "1"},
-        {"Materials/Names", names_of(material_list())},
+        {"Materials/Names", join(names_of(material_list()), ",")},
         {"Bodies/Names", "deformable,rigid,from file"},
         {"Bodies/rigid/Kind", "rigid"},
         {"Bodies/from file/Points from", "file"},

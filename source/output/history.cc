@@ -69,7 +69,7 @@ namespace impm
 
   template <int dim>
   std::vector<std::string>
-  history_columns(const Scene<dim> &scene)
+  history_columns(const OutputSpec &output, const GeometryKind geometry)
   {
     std::vector<std::string> names = {"step",
                                       "time",
@@ -90,9 +90,9 @@ namespace impm
                   "plastic_work",
                   "external_work",
                   "wall_seconds"});
-    for (const auto &probe : scene.output.probes)
+    for (const auto &probe : output.probes)
       names.push_back(probe.name);
-    for (const auto &reaction : scene.output.reactions)
+    for (const auto &reaction : output.reactions)
       names.push_back(reaction.name);
     names.insert(names.end(),
                  {"residual",
@@ -102,7 +102,7 @@ namespace impm
                   "held_cells",
                   "limited_boxes",
                   "total_energy"});
-    if (scene.geometry != GeometryKind::axisymmetric)
+    if (geometry != GeometryKind::axisymmetric)
       for (unsigned int d = dim == 2 ? 2 : 0; d < 3; ++d)
         names.push_back(std::string("angular_momentum_") + "xyz"[d]);
     names.push_back("stabilization_work");
@@ -110,27 +110,31 @@ namespace impm
   }
 
   template <int dim>
-  History<dim>::History(const Scene<dim>          &scene,
+  History<dim>::History(const OutputSpec          &output,
+                        const Faces<dim>          &faces,
+                        const Bodies<dim>         &bodies,
                         const MaterialPoints<dim> &points,
                         const RigidBodies<dim>    &rigid,
                         const BackgroundGrid<dim> &grid)
-    : scene(scene)
+    : columns(history_columns<dim>(output, points.layout.geometry))
+    , output(output)
+    , faces(faces)
+    , bodies(bodies)
     , points(points)
     , rigid(rigid)
     , grid(grid)
-    , reactions(scene.output.reactions.size())
-    , columns(history_columns(scene))
+    , reactions(output.reactions.size())
   {
     for (unsigned int f = 0; f < 2 * dim; ++f)
       face_start[f] = grid.face_position(f);
-    for (const auto &probe : scene.output.probes)
+    for (const auto &probe : output.probes)
       {
         Follower follower;
         if (!probe.field.empty())
           {
             const std::string entry = "Output/" + probe.name + "/Field";
             follower.field =
-              make_point_field(probe.field, points, scene.output.fringe_number);
+              make_point_field(probe.field, points, output.fringe_number);
             if (!follower.field)
               throw InputError(entry,
                                "found '" + probe.field +
@@ -200,7 +204,7 @@ namespace impm
   {
     for (unsigned int r = 0; r < reactions.size(); ++r)
       {
-        const auto &spec = scene.output.reactions[r];
+        const auto &spec = output.reactions[r];
         double      norm = 0;
         for (const double d : spec.direction)
           norm += d * d;
@@ -217,14 +221,14 @@ namespace impm
   History<dim>::probe(const unsigned int index, const double time) const
   {
     using Kind            = ProbeSpec::Kind;
-    const auto &spec      = scene.output.probes[index];
+    const auto &spec      = output.probes[index];
     const auto &follower  = followers[index];
     const auto  component = spec.component;
 
     if (spec.kind == Kind::motion)
       {
         for (unsigned int f = 0; f < 2 * dim; ++f)
-          if (scene.faces[f].name == spec.of)
+          if (faces[f].name == spec.of)
             return component == f / 2 ? grid.face_position(f) - face_start[f] :
                                         0.;
         for (unsigned int b = 0; b < rigid.size(); ++b)
@@ -241,7 +245,7 @@ namespace impm
       {
         const unsigned int point = p++;
         const auto        &body =
-          scene.bodies[static_cast<unsigned int>(points.fields(point)[0])];
+          bodies[static_cast<unsigned int>(points.fields(point)[0])];
         if (spec.kind == Kind::point ?
               particle.get_id() != follower.id :
               !spec.bodies.empty() &&
@@ -301,12 +305,11 @@ namespace impm
     const auto totals   = total(points);
     const auto n_points = points.sorted.n_global();
     figures.clear();
-    for (unsigned int i = 0; i < scene.output.probes.size(); ++i)
-      figures.emplace_back(scene.output.probes[i].name,
-                           scene.output.probes[i].factor *
-                             probe(i, report.time));
+    for (unsigned int i = 0; i < output.probes.size(); ++i)
+      figures.emplace_back(output.probes[i].name,
+                           output.probes[i].factor * probe(i, report.time));
     for (unsigned int i = 0; i < reactions.size(); ++i)
-      figures.emplace_back(scene.output.reactions[i].name, reactions[i]);
+      figures.emplace_back(output.reactions[i].name, reactions[i]);
     if (Utilities::MPI::this_mpi_process(points.communicator) != 0)
       return;
 
@@ -339,7 +342,7 @@ namespace impm
     add(report.held_cells);
     add(report.limited_boxes);
     add(totals.kinetic_energy + totals.strain_energy);
-    if (scene.geometry != GeometryKind::axisymmetric)
+    if (points.layout.geometry != GeometryKind::axisymmetric)
       for (unsigned int d = dim == 2 ? 2 : 0; d < 3; ++d)
         add(totals.angular_momentum[d]);
     add(report.stabilization_work);
@@ -366,9 +369,9 @@ namespace impm
   }
 
   template std::vector<std::string>
-  history_columns(const Scene<2> &);
+  history_columns<2>(const OutputSpec &, GeometryKind);
   template std::vector<std::string>
-  history_columns(const Scene<3> &);
+  history_columns<3>(const OutputSpec &, GeometryKind);
   template class History<2>;
   template class History<3>;
   template Totals<2>

@@ -126,25 +126,6 @@ namespace impm
   }
 
   template <int dim>
-  void
-  Pictures<dim>::check_fields(const OutputSpec &spec)
-  {
-    const auto &known = point_field_names();
-    std::string all;
-    for (const auto &name : known)
-      all += (all.empty() ? "" : ", ") + name;
-    for (const auto &name : spec.point_fields)
-      if (std::find(known.begin(), known.end(), name) == known.end())
-        throw InputError("Output/Point fields",
-                         "found '" + name + "', allowed are: " + all);
-    for (const auto &probe : spec.probes)
-      if (!probe.field.empty() &&
-          std::find(known.begin(), known.end(), probe.field) == known.end())
-        throw InputError("Output/" + probe.name + "/Field",
-                         "found '" + probe.field + "', allowed are: " + all);
-  }
-
-  template <int dim>
   Pictures<dim>::Pictures(const OutputSpec          &spec,
                           const MaterialPoints<dim> &points,
                           const RigidBodies<dim>    &rigid,
@@ -153,7 +134,6 @@ namespace impm
     , rigid(rigid)
     , grid(grid)
   {
-    check_fields(spec);
     for (const auto &name : spec.point_fields)
       if (auto field = make_point_field(name, points, spec.fringe_number))
         fields.push_back(std::move(*field));

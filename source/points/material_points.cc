@@ -89,94 +89,41 @@ namespace impm
   } // namespace
 
   template <int dim>
-  PointLayout
-  MaterialPoints<dim>::choose_layout(const Scene<dim> &scene)
-  {
-    using Kind = PointLayout::Kind;
-    PointLayout layout(scene.geometry);
-    layout.add("body", Kind::scalar);
-    layout.add("initial_volume", Kind::scalar);
-    layout.add("deformation_gradient", Kind::tensor);
-
-    const auto &output = scene.output;
-    const bool  wants_initial_position =
-      std::count(output.point_fields.begin(),
-                 output.point_fields.end(),
-                 "displacement") > 0 ||
-      std::any_of(output.probes.begin(),
-                  output.probes.end(),
-                  [](const ProbeSpec &probe) {
-                    return probe.field == "displacement" || probe.where;
-                  }) ||
-      std::any_of(scene.references.begin(),
-                  scene.references.end(),
-                  [](const ReferenceSpec<dim> &reference) {
-                    return !reference.field.empty();
-                  });
-    if (scene.has_inertia())
-      layout.add("velocity", Kind::vector);
-    if (scene.time.keeps_acceleration)
-      layout.add("acceleration", Kind::vector);
-    if (scene.keeps_stress())
-      layout.add("stress", Kind::symmetric_tensor);
-    if (scene.has_inertia() && scene.time.transfer == TransferKind::apic)
-      for (unsigned int d = 0; d < dim; ++d)
-        layout.add(std::string("velocity_gradient_") + "xyz"[d], Kind::vector);
-    if (wants_initial_position || scene.body_force_is_initial ||
-        std::any_of(scene.tractions.begin(),
-                    scene.tractions.end(),
-                    [](const auto &traction) { return traction.is_initial; }))
-      layout.add("initial_position", Kind::vector);
-    if (scene.grid.method == GridMethod::gimp ||
-        std::any_of(output.probes.begin(),
-                    output.probes.end(),
-                    [](const ProbeSpec &probe) {
-                      return probe.kind == ProbeSpec::Kind::extent;
-                    }))
-      layout.add("initial_domain", Kind::vector);
-
-    for (const auto &traction : scene.tractions)
-      layout.add(traction_field(traction), Kind::scalar);
-
-    // The history comes last, in one block.
-    for (const auto &field : scene.history->fields())
-      layout.add(field.name, field.kind);
-    return layout;
-  }
-
-  template <int dim>
-  MaterialPoints<dim>::MaterialPoints(const Scene<dim>          &scene,
+  MaterialPoints<dim>::MaterialPoints(const PointLayout         &layout,
+                                      const PointLayout         &history,
+                                      const Bodies<dim>         &bodies,
+                                      const Tractions<dim>      &tractions,
                                       const BackgroundGrid<dim> &grid)
-    : layout(choose_layout(scene))
+    : layout(layout)
     , sorted(grid, layout.size())
     , offset_deformation(layout.offset("deformation_gradient"))
-    , offset_history(layout.size() - scene.history->size())
+    , offset_history(layout.size() - history.size())
     , offset_velocity(offset_or_zero(layout, "velocity"))
     , offset_acceleration(offset_or_zero(layout, "acceleration"))
     , offset_affine(offset_or_zero(layout, "velocity_gradient_x"))
     , offset_stress(offset_or_zero(layout, "stress"))
     , offset_initial_position(offset_or_zero(layout, "initial_position"))
-    , history_layout(*scene.history)
+    , history_layout(history)
     , communicator(grid.communicator)
   {
     Tensor<2, 3> identity;
     for (unsigned int d = 0; d < 3; ++d)
       identity[d][d] = 1;
 
-    for (unsigned int b = 0; b < scene.bodies.size(); ++b)
+    for (unsigned int b = 0; b < bodies.size(); ++b)
       {
-        const auto &body = scene.bodies[b];
+        const auto &body = bodies[b];
         materials.push_back(body.material);
         if (body.rigid)
           continue;
         sorted.insert(
-          seed_body(scene, body, grid),
+          seed_body(bodies, body, layout.geometry, grid),
           [&](const Seed<dim> &seed, double *values) {
             std::fill_n(values, layout.size(), 0.);
             values[layout.offset("body")]           = b;
             values[layout.offset("initial_volume")] = seed.volume;
             layout.store_tensor(identity, values + offset_deformation);
-            if (scene.has_inertia())
+            if (offset_velocity > 0)
               {
                 dealii::Vector<double> velocity(dim);
                 if (body.velocity)
@@ -203,7 +150,7 @@ namespace impm
                 if (layout.has("initial_domain"))
                   values[layout.offset("initial_domain") + d] = seed.domain[d];
               }
-            for (const auto &traction : scene.tractions)
+            for (const auto &traction : tractions)
               if (traction.body == body.name)
                 values[layout.offset(traction_field(traction))] =
                   traction_area(traction, seed);
@@ -211,7 +158,7 @@ namespace impm
           });
       }
     sort();
-    check_tractions(scene, *this);
+    check_tractions(tractions, *this);
   }
 
   template <int dim>

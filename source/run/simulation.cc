@@ -7,6 +7,7 @@
 #include <impm/run/checkpoint.h>
 #include <impm/run/motion_limits.h>
 #include <impm/run/simulation.h>
+#include <impm/scene/layout_choice.h>
 
 #include <algorithm>
 #include <cmath>
@@ -27,16 +28,25 @@ namespace impm
     , silence(std::cout, false)
     , timer(silence, TimerOutput::never, TimerOutput::wall_times)
     , grid(scene.grid, communicator)
-    , points(scene, grid)
-    , rigid(scene, grid)
+    , points(choose_layout(scene),
+             *scene.history,
+             scene.bodies,
+             scene.loads.tractions,
+             grid)
+    , rigid(scene.bodies, scene.geometry, grid)
     , policy(other_policy ? std::move(other_policy) :
                             make_grid_policy(scene.grid, scene.faces))
     , control(scene.time)
     , integrator(make_time_integrator(scene.time))
     , builder(make_footprint_builder(scene.grid))
     , pictures(scene.output, points, rigid, grid)
-    , history(scene, points, rigid, grid)
-    , reference(scene, points, history)
+    , history(scene.output, scene.faces, scene.bodies, points, rigid, grid)
+    , reference(scene.references,
+                scene.bodies,
+                scene.output,
+                scene.time,
+                points,
+                history)
     , console(verbosity, Utilities::MPI::this_mpi_process(communicator) == 0)
     , warnings(scene.warnings)
   {}
@@ -46,15 +56,17 @@ namespace impm
   Simulation<dim>::describe()
   {
     std::ostringstream text;
-    text << (scene.title.empty() ? "scene" : scene.title) << '\n'
+    text << (scene.general.title.empty() ? "scene" : scene.general.title)
+         << '\n'
          << "  grid: " << grid.triangulation.n_global_active_cells()
          << " cells, " << grid.discretization()->dof_handler().n_dofs()
          << " unknowns\n"
          << "  points: " << points.sorted.n_global() << '\n';
-    const auto counts = count_points_under_tractions(scene, points);
+    const auto counts =
+      count_points_under_tractions(scene.loads.tractions, points);
     for (unsigned int t = 0; t < counts.size(); ++t)
-      text << "  traction " << scene.tractions[t].name << ": on " << counts[t]
-           << " points\n";
+      text << "  traction " << scene.loads.tractions[t].name << ": on "
+           << counts[t] << " points\n";
     text << "  fields of a point:\n";
     for (const auto &field : points.layout.fields())
       text << "    " << field.name << " (" << field.n_components << ")\n";

@@ -26,7 +26,7 @@ namespace impm
 
     template <int dim>
     void
-    seed_shape(const Scene<dim>          &scene,
+    seed_shape(const GeometryKind         geometry,
                const BodySpec<dim>       &body,
                const BackgroundGrid<dim> &grid,
                std::vector<Seed<dim>>    &seeds)
@@ -54,9 +54,8 @@ namespace impm
                 }
               if (!body.shape->contains(seed.position))
                 continue;
-              seed.cell = cell;
-              seed.volume =
-                volume * circumference(scene.geometry, seed.position);
+              seed.cell   = cell;
+              seed.volume = volume * circumference(geometry, seed.position);
               seeds.push_back(seed);
             }
     }
@@ -75,7 +74,7 @@ namespace impm
     /** Gauss points, in cells that lie in the body as a whole. */
     template <int dim>
     void
-    seed_gauss_points(const Scene<dim>          &scene,
+    seed_gauss_points(const GeometryKind         geometry,
                       const BodySpec<dim>       &body,
                       const BackgroundGrid<dim> &grid,
                       std::vector<Seed<dim>>    &seeds)
@@ -108,7 +107,7 @@ namespace impm
                 seed.position      = values.quadrature_point(q);
                 seed.unit_position = quadrature.point(q);
                 seed.volume =
-                  values.JxW(q) * circumference(scene.geometry, seed.position);
+                  values.JxW(q) * circumference(geometry, seed.position);
                 for (unsigned int d = 0; d < dim; ++d)
                   seed.domain[d] =
                     cell_extent(cell, d) / body.points_per_cell[d];
@@ -126,7 +125,7 @@ namespace impm
 
     template <int dim>
     void
-    seed_file(const Scene<dim>          &scene,
+    seed_file(const GeometryKind         geometry,
               const BodySpec<dim>       &body,
               const BackgroundGrid<dim> &grid,
               std::vector<Seed<dim>>    &seeds)
@@ -163,8 +162,7 @@ namespace impm
         {
           if (first[p] == 1e300)
             refuse(p, " lies outside the grid");
-          if (!body.rigid &&
-              circumference(scene.geometry, cloud.positions[p]) == 0)
+          if (!body.rigid && circumference(geometry, cloud.positions[p]) == 0)
             refuse(p,
                    " lies on the axis, where a ring has no volume; allowed is "
                    "r > 0");
@@ -177,7 +175,7 @@ namespace impm
             grid.mapping->transform_real_to_unit_cell(seed.cell, seed.position);
           seed.volume = body.rigid ? 1. : cloud.volumes[p];
           const double extent =
-            std::pow(seed.volume / circumference(scene.geometry, seed.position),
+            std::pow(seed.volume / circumference(geometry, seed.position),
                      1. / dim);
           for (unsigned int d = 0; d < dim; ++d)
             seed.domain[d] = extent;
@@ -188,17 +186,18 @@ namespace impm
 
   template <int dim>
   std::vector<Seed<dim>>
-  seed_body(const Scene<dim>          &scene,
+  seed_body(const Bodies<dim>         &bodies,
             const BodySpec<dim>       &body,
+            const GeometryKind         geometry,
             const BackgroundGrid<dim> &grid)
   {
     std::vector<Seed<dim>> seeds;
     if (grid.is_lagrangian)
-      seed_gauss_points(scene, body, grid, seeds);
+      seed_gauss_points(geometry, body, grid, seeds);
     else if (body.shape)
-      seed_shape(scene, body, grid, seeds);
+      seed_shape(geometry, body, grid, seeds);
     else
-      seed_file(scene, body, grid, seeds);
+      seed_file(geometry, body, grid, seeds);
 
     const std::string entry =
       "Bodies/" + body.name + (body.shape ? "/Shape" : "/File");
@@ -207,9 +206,9 @@ namespace impm
                        "body '" + body.name +
                          "' has no points: it is empty, lies outside the grid "
                          "or is too thin for 'Points per cell'");
-    for (unsigned int b = 0; b < scene.bodies.size(); ++b)
+    for (unsigned int b = 0; b < bodies.size(); ++b)
       {
-        const auto &other = scene.bodies[b];
+        const auto &other = bodies[b];
         if (other.name == body.name || !other.shape)
           continue;
         unsigned int shared = 0;
@@ -226,7 +225,13 @@ namespace impm
   }
 
   template std::vector<Seed<2>>
-  seed_body(const Scene<2> &, const BodySpec<2> &, const BackgroundGrid<2> &);
+  seed_body(const Bodies<2> &,
+            const BodySpec<2> &,
+            GeometryKind,
+            const BackgroundGrid<2> &);
   template std::vector<Seed<3>>
-  seed_body(const Scene<3> &, const BodySpec<3> &, const BackgroundGrid<3> &);
+  seed_body(const Bodies<3> &,
+            const BodySpec<3> &,
+            GeometryKind,
+            const BackgroundGrid<3> &);
 } // namespace impm

@@ -92,20 +92,20 @@ namespace impm
         TimerOutput::Scope scope(timer, "assembly");
         assemble();
       }
-    if (spec.linear_solver != "direct")
+    if (spec.linear_solver != LinearSolverKind::direct)
       update_preconditioner();
   }
 
   void
   LinearSolver::update_preconditioner()
   {
-    if (spec.preconditioner == "AMG")
+    if (spec.preconditioner == PreconditionerKind::amg)
       {
         TimerOutput::Scope scope(timer, "preconditioner");
         amg.build(*matrix, system.near_null_space());
         return;
       }
-    if (spec.preconditioner == "Jacobi")
+    if (spec.preconditioner == PreconditionerKind::jacobi)
       system.diagonal(inverse_diagonal);
     else if (solves_for_momentum())
       inverse_diagonal = *system.weight_of_unknowns();
@@ -136,14 +136,15 @@ namespace impm
         }
     };
     const auto run = [&](auto &solver) {
-      if (spec.preconditioner == "AMG")
+      if (spec.preconditioner == PreconditionerKind::amg)
         solver.solve(tangent, x, b, amg);
-      else if (spec.preconditioner == "Jacobi" || solves_for_momentum())
+      else if (spec.preconditioner == PreconditionerKind::jacobi ||
+               solves_for_momentum())
         solver.solve(tangent, x, b, JacobiPreconditioner{inverse_diagonal});
       else
         solver.solve(tangent, x, b, PreconditionIdentity());
     };
-    if (spec.linear_solver == "CG")
+    if (spec.linear_solver == LinearSolverKind::cg)
       {
         SolverCG<Vector> solver(control);
         run(solver);
@@ -175,7 +176,7 @@ namespace impm
   LinearSolver::solve(Vector &x, const Vector &b, const double tolerance)
   {
     x = 0;
-    if (spec.linear_solver == "direct")
+    if (spec.linear_solver == LinearSolverKind::direct)
       {
         solve_directly(x, b);
         return 1;

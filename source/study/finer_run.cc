@@ -45,15 +45,16 @@ namespace impm
   } // namespace
 
   template <int dim>
-  FinerRunner<dim>::FinerRunner(const Scene<dim>  &scene,
-                                const CommandLine &line,
-                                const std::string &directory,
-                                const MPI_Comm     communicator)
+  FinerRunner<dim>::FinerRunner(
+    const std::vector<ReferenceSpec<dim>> &references,
+    const CommandLine                     &line,
+    const std::string                     &directory,
+    const MPI_Comm                         communicator)
     : verbosity(line.verbosity)
     , communicator(communicator)
   {
     const bool first = Utilities::MPI::this_mpi_process(communicator) == 0;
-    for (const auto &spec : scene.references)
+    for (const auto &spec : references)
       if (spec.kind == ReferenceSpec<dim>::Kind::finer_run)
         try
           {
@@ -72,8 +73,9 @@ namespace impm
                       read_scene<dim>(file.handler(), line.parameter_file),
                       false};
             task.scene.references.clear();
-            const auto columns = history_columns(task.scene);
-            auto       wanted  = spec.columns;
+            const auto columns =
+              history_columns<dim>(task.scene.output, task.scene.geometry);
+            auto wanted = spec.columns;
             wanted.push_back(spec.against);
             for (const auto &column : wanted)
               if (std::count(columns.begin(), columns.end(), column) == 0)

@@ -12,12 +12,6 @@ namespace impm
   {
     const double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
-    std::string
-    name_of(const Norm norm)
-    {
-      return norm == Norm::L1 ? "L1" : norm == Norm::L2 ? "L2" : "max";
-    }
-
     /** Divides the error, and says what is wrong with it. */
     void
     finish(ReferenceError              &record,
@@ -80,8 +74,8 @@ namespace impm
   bool
   Reference<dim>::follows_steps() const
   {
-    return std::any_of(scene.references.begin(),
-                       scene.references.end(),
+    return std::any_of(references.begin(),
+                       references.end(),
                        [](const Spec &spec) { return spec.largest; });
   }
 
@@ -90,10 +84,9 @@ namespace impm
   Reference<dim>::follow_step(const double time)
   {
     for (unsigned int i = 0; i < followers.size(); ++i)
-      if (scene.references[i].largest)
+      if (references[i].largest)
         {
-          const auto now =
-            compare_field(scene.references[i], followers[i], time);
+          const auto now = compare_field(references[i], followers[i], time);
           // What is not a number once stays so.
           const auto rise = [](double &largest, const double value) {
             if (!(value <= largest) && !std::isnan(largest))
@@ -205,7 +198,7 @@ namespace impm
     std::vector<ReferenceError> records;
     for (unsigned int i = 0; i < followers.size(); ++i)
       {
-        const auto &spec = scene.references[i];
+        const auto &spec = references[i];
         if (spec.kind == Spec::Kind::field)
           {
             const auto norms = spec.largest ?

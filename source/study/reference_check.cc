@@ -1,46 +1,38 @@
 #include <impm/base/exceptions.h>
+#include <impm/base/names.h>
 #include <impm/study/reference.h>
 
 #include <algorithm>
 
 namespace impm
 {
-  namespace
-  {
-    std::string
-    join(const std::vector<std::string> &names)
-    {
-      std::string all;
-      for (const auto &name : names)
-        all += (all.empty() ? "" : ", ") + name;
-      return all;
-    }
-  } // namespace
-
   template <int dim>
-  Reference<dim>::Reference(const Scene<dim>          &scene,
-                            const MaterialPoints<dim> &points,
-                            History<dim>              &history)
-    : scene(scene)
+  Reference<dim>::Reference(const std::vector<ReferenceSpec<dim>> &references,
+                            const Bodies<dim>                     &bodies,
+                            const OutputSpec                      &output,
+                            const TimeSpec                        &time,
+                            const MaterialPoints<dim>             &points,
+                            History<dim>                          &history)
+    : references(references)
     , points(points)
     , history(history)
-    , followers(scene.references.size())
+    , followers(references.size())
   {
-    for (unsigned int i = 0; i < scene.references.size(); ++i)
+    for (unsigned int i = 0; i < references.size(); ++i)
       try
         {
-          const auto &spec = scene.references[i];
+          const auto &spec = references[i];
           if (spec.kind == Spec::Kind::field)
             {
-              prepare_field(spec, followers[i]);
+              prepare_field(spec, bodies, output.fringe_number, followers[i]);
               continue;
             }
-          check_columns(spec);
+          check_columns(spec, time.end);
           history.remember_rows();
         }
       catch (const InputError &error)
         {
-          throw InputError("Reference/" + scene.references[i].name + "/" +
+          throw InputError("Reference/" + references[i].name + "/" +
                              error.entry,
                            error.what());
         }
@@ -48,16 +40,16 @@ namespace impm
 
   template <int dim>
   void
-  Reference<dim>::check_columns(const Spec &spec) const
+  Reference<dim>::check_columns(const Spec &spec, const double end_time) const
   {
-    const auto allowed = history_columns(scene);
-    const auto check   = [&](const std::string &entry,
+    const auto &allowed = history.columns;
+    const auto  check   = [&](const std::string &entry,
                            const std::string &column) {
       if (std::count(allowed.begin(), allowed.end(), column) == 0)
         throw InputError(entry,
                          "found '" + column +
                            "', allowed are the columns of the history: " +
-                           join(allowed));
+                           join(allowed, ", "));
     };
     for (const auto &column : spec.columns)
       check(spec.kind == Spec::Kind::probe ? "Of" :
@@ -65,19 +57,21 @@ namespace impm
                                              "Columns",
             column);
     check("Against", spec.against);
-    if (spec.time && !(*spec.time > 0 && *spec.time <= scene.time.end))
+    if (spec.time && !(*spec.time > 0 && *spec.time <= end_time))
       throw InputError("Time",
                        "found " + std::to_string(*spec.time) +
                          ", allowed is more than 0 and at most the end time " +
-                         std::to_string(scene.time.end));
+                         std::to_string(end_time));
   }
 
   template <int dim>
   void
-  Reference<dim>::prepare_field(const Spec &spec, Follower &follower) const
+  Reference<dim>::prepare_field(const Spec        &spec,
+                                const Bodies<dim> &bodies,
+                                const double       fringe_number,
+                                Follower          &follower) const
   {
-    follower.field =
-      make_point_field(spec.field, points, scene.output.fringe_number);
+    follower.field = make_point_field(spec.field, points, fringe_number);
     if (!follower.field)
       {
         std::vector<std::string> allowed;
@@ -86,7 +80,8 @@ namespace impm
             allowed.push_back(name);
         throw InputError("Field",
                          "found '" + spec.field +
-                           "', allowed in this scene are: " + join(allowed));
+                           "', allowed in this scene are: " +
+                           join(allowed, ", "));
       }
     const unsigned int n = follower.field->n_components;
     follower.components  = spec.components;
@@ -106,26 +101,24 @@ namespace impm
                          std::to_string(follower.components.size()) +
                          " between semicolons, one for each component");
 
-    std::vector<std::string> deformable;
-    for (const auto &body : scene.bodies)
-      {
-        if (!body.rigid)
-          deformable.push_back(body.name);
-        follower.takes_body.push_back(
-          spec.bodies.empty() ||
-          std::count(spec.bodies.begin(), spec.bodies.end(), body.name) > 0);
-      }
+    for (const auto &body : bodies)
+      follower.takes_body.push_back(
+        spec.bodies.empty() ||
+        std::count(spec.bodies.begin(), spec.bodies.end(), body.name) > 0);
     for (const auto &body : spec.bodies)
-      if (std::count(deformable.begin(), deformable.end(), body) == 0)
-        throw InputError("Bodies",
-                         "found '" + body +
-                           "', allowed are: " + join(deformable));
+      require_name(names_of_bodies(bodies, false), body, "Bodies");
   }
 
-  template Reference<2>::Reference(const Scene<2> &,
+  template Reference<2>::Reference(const std::vector<ReferenceSpec<2>> &,
+                                   const Bodies<2> &,
+                                   const OutputSpec &,
+                                   const TimeSpec &,
                                    const MaterialPoints<2> &,
                                    History<2> &);
-  template Reference<3>::Reference(const Scene<3> &,
+  template Reference<3>::Reference(const std::vector<ReferenceSpec<3>> &,
+                                   const Bodies<3> &,
+                                   const OutputSpec &,
+                                   const TimeSpec &,
                                    const MaterialPoints<3> &,
                                    History<3> &);
 } // namespace impm

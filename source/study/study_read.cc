@@ -41,22 +41,19 @@ namespace impm
     void
     declare_list(ParameterHandler &prm)
     {
-      prm.declare_entry("Entries",
-                        "",
-                        Patterns::Anything(),
-                        "What is set: paths of entries (Grid/Cells), between "
-                        "semicolons; 'ranks' is the number of MPI processes.");
-      prm.declare_entry("Values",
-                        "",
-                        Patterns::Anything(),
-                        "Between |, one for each run. With several entries, "
-                        "each has a part for each of them, between semicolons; "
-                        "an empty part leaves the entry as the scene has it.");
-      prm.declare_entry("Labels",
-                        "",
-                        Patterns::Anything(),
-                        "Short names of the values for tables and directories; "
-                        "empty: the values themselves.");
+      declare_text(prm,
+                   "Entries",
+                   "What is set: paths of entries (Grid/Cells), between "
+                   "semicolons; 'ranks' is the number of MPI processes.");
+      declare_text(prm,
+                   "Values",
+                   "Between |, one for each run. With several entries, "
+                   "each has a part for each of them, between semicolons; "
+                   "an empty part leaves the entry as the scene has it.");
+      declare_text(prm,
+                   "Labels",
+                   "Short names of the values for tables and directories; "
+                   "empty: the values themselves.");
       prm.declare_entry("Sizes",
                         "",
                         Patterns::List(
@@ -64,10 +61,9 @@ namespace impm
                         "One for each value: cell size, time step, ...: the "
                         "abscissa of diagrams and orders; empty: the values "
                         "themselves if they are numbers.");
-      prm.declare_entry("Size name",
-                        "",
-                        Patterns::Anything(),
-                        "Of the abscissa, with its unit: 'cell size (m)'.");
+      declare_text(prm,
+                   "Size name",
+                   "Of the abscissa, with its unit: 'cell size (m)'.");
     }
 
     StudyList
@@ -168,16 +164,14 @@ namespace impm
   declare_study(ParameterHandler &prm, const ParameterFile::Chosen &chosen)
   {
     prm.enter_subsection("Study");
-    prm.declare_entry("Scene",
-                      "",
-                      Patterns::Anything(),
-                      "Path, from this file, of the parameter file of a scene "
-                      "that is read before this one; empty: none.");
-    prm.declare_entry("Lists",
-                      "",
-                      Patterns::Anything(),
-                      "Names of lists of values, each with a subsection; runs "
-                      "go over them with --study.");
+    declare_text(prm,
+                 "Scene",
+                 "Path, from this file, of the parameter file of a scene "
+                 "that is read before this one; empty: none.");
+    declare_text(prm,
+                 "Lists",
+                 "Names of lists of values, each with a subsection; runs "
+                 "go over them with --study.");
     const auto lists = split_names(chosen("Study/Lists", ""));
     if (!lists.empty())
       {
@@ -187,21 +181,19 @@ namespace impm
                           "Crossed: every value with every value of the other "
                           "lists. Paired: the first of each, the second of "
                           "each, ...");
-        prm.declare_entry("Order along",
-                          "",
-                          Patterns::Anything(),
-                          "The list along which orders of convergence are "
-                          "computed; empty: the first that has sizes.");
+        declare_text(prm,
+                     "Order along",
+                     "The list along which orders of convergence are "
+                     "computed; empty: the first that has sizes.");
         prm.declare_entry("Repeat",
                           "1",
                           Patterns::Integer(1, 100),
                           "How often each run is made; its wall time is the "
                           "median.");
-        prm.declare_entry("Columns",
-                          "",
-                          Patterns::Anything(),
-                          "Figures (probes, reactions) of study.csv; empty: "
-                          "all.");
+        declare_text(prm,
+                     "Columns",
+                     "Figures (probes, reactions) of study.csv; empty: "
+                     "all.");
       }
     for (const auto &name : lists)
       {

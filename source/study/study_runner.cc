@@ -1,4 +1,5 @@
 #include <impm/base/exceptions.h>
+#include <impm/base/names.h>
 #include <impm/output/pictures.h>
 #include <impm/scene/scene.h>
 #include <impm/study/study_process.h>
@@ -21,20 +22,12 @@ namespace impm
     check_scene(dealii::ParameterHandler       &prm,
                 const std::vector<std::string> &columns)
     {
-      const auto  scene = read_scene<dim>(prm);
-      std::string figures;
-      const auto  add = [&](const std::string &name) {
-        figures += (figures.empty() ? "" : ", ") + name;
-      };
-      for (const auto &probe : scene.output.probes)
-        add(probe.name);
-      for (const auto &reaction : scene.output.reactions)
-        add(reaction.name);
-      const auto known = split_names(figures);
+      const auto output  = read_scene<dim>(prm).output;
+      auto       figures = names_of(output.probes);
+      for (const auto &name : names_of(output.reactions))
+        figures.push_back(name);
       for (const auto &column : columns)
-        if (std::find(known.begin(), known.end(), column) == known.end())
-          throw InputError("Study/Columns",
-                           "found '" + column + "', allowed are: " + figures);
+        require_name(figures, column, "Study/Columns");
     }
 
     /** The resolved parameters of a run, which has been found to be a scene. */

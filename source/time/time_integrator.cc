@@ -225,14 +225,16 @@ namespace impm
   std::unique_ptr<TimeIntegrator>
   make_time_integrator(const TimeSpec &spec)
   {
-    if (spec.integrator == "explicit")
-      return std::make_unique<Theta>(0);
-    if (spec.integrator == "theta")
-      return std::make_unique<Theta>(spec.theta);
-    if (spec.integrator == "Newmark")
-      return std::make_unique<Newmark>(spec.beta,
-                                       spec.gamma,
-                                       spec.keeps_acceleration);
-    return std::make_unique<QuasiStatic>();
+    switch (spec.integrator)
+      {
+        case Integrator::quasi_static:
+          return std::make_unique<QuasiStatic>();
+        case Integrator::newmark:
+          return std::make_unique<Newmark>(spec.beta,
+                                           spec.gamma,
+                                           spec.keeps_acceleration);
+        default:
+          return std::make_unique<Theta>(spec.theta);
+      }
   }
 } // namespace impm

@@ -25,11 +25,10 @@ namespace impm
      * For a step of length dt (s), with gradients that are zero. Evaluations of
      * laws are counted in `n_evaluations`.
      */
-    PointResponse(const std::vector<BodySpec<dim>> &bodies,
-                  bool                              keeps_stress,
-                  const MaterialPoints<dim>        &points,
-                  double                            dt,
-                  unsigned long                    &n_evaluations);
+    PointResponse(const Bodies<dim>         &bodies,
+                  const MaterialPoints<dim> &points,
+                  double                     dt,
+                  unsigned long             &n_evaluations);
 
     /**
      * Evaluates the laws at `gradients`; adds V0 times their potential.
@@ -107,7 +106,9 @@ namespace impm
 
       unsigned int                           first, size;
       const Material                        *law;
-      List<dealii::Tensor<2, 3>>             increment;
+      List<dealii::Tensor<2, 3>>             start, increment, total, inverse;
+      List<const double *>                   history;
+      List<double *>                         trial_history;
       List<Material::Response>               response;
       List<typename Kinematics<dim>::Matrix> spatial; ///< tangents
     };

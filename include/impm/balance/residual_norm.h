@@ -2,6 +2,7 @@
 #define impm_balance_residual_norm_h
 
 #include <impm/footprints/footprints.h>
+#include <impm/input/sections/solver.h>
 
 #include <vector>
 
@@ -22,12 +23,12 @@ namespace impm
   public:
     /** Collective. */
     template <int dim>
-    ResidualNorm(ResidualScale                     scale,
-                 double                            dt,
-                 const std::vector<BodySpec<dim>> &bodies,
-                 const MaterialPoints<dim>        &points,
-                 const Footprints<dim>            &footprints,
-                 const Discretization<dim>        &discretization);
+    ResidualNorm(ResidualScale              scale,
+                 double                     dt,
+                 const Bodies<dim>         &bodies,
+                 const MaterialPoints<dim> &points,
+                 const Footprints<dim>     &footprints,
+                 const Discretization<dim> &discretization);
 
     /** Sums of (phi_b f)^2 of this rank (N^2). */
     std::vector<double>

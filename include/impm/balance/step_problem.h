@@ -8,6 +8,7 @@
 #include <impm/footprints/gather.h>
 #include <impm/grid/populated_cells.h>
 #include <impm/grid/step_result.h>
+#include <impm/scene/scene.h>
 #include <impm/time/time_integrator.h>
 
 #include <memory>

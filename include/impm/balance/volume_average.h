@@ -3,6 +3,7 @@
 
 #include <impm/balance/kinematics.h>
 #include <impm/points/material_points.h>
+#include <impm/scene/scene.h>
 
 #include <vector>
 
@@ -29,9 +30,9 @@ namespace impm
   {
   public:
     /** Groups the points as they are. */
-    VolumeAverage(const std::vector<BodySpec<dim>> &bodies,
-                  const MaterialPoints<dim>        &points,
-                  const Kinematics<dim>            &kinematics);
+    VolumeAverage(const Bodies<dim>         &bodies,
+                  const MaterialPoints<dim> &points,
+                  const Kinematics<dim>     &kinematics);
 
     /** Whether a point takes part. */
     bool

@@ -25,12 +25,12 @@ namespace impm
    */
   template <int dim>
   NodalMotion
-  gather_motion(const MaterialPoints<dim>        &points,
-                const std::vector<BodySpec<dim>> &bodies,
-                const Footprints<dim>            &footprints,
-                const StepConstraints<dim>       &constraints,
-                const BackgroundGrid<dim>        &grid,
-                const Discretization<dim>        &discretization);
+  gather_motion(const MaterialPoints<dim>  &points,
+                const Bodies<dim>          &bodies,
+                const Footprints<dim>      &footprints,
+                const StepConstraints<dim> &constraints,
+                const BackgroundGrid<dim>  &grid,
+                const Discretization<dim>  &discretization);
 } // namespace impm
 
 #endif

@@ -8,7 +8,7 @@
 #include <deal.II/fe/mapping.h>
 
 #include <impm/grid/discretization.h>
-#include <impm/scene/scene.h>
+#include <impm/input/sections/grid.h>
 
 #include <memory>
 

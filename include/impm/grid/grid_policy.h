@@ -3,6 +3,7 @@
 
 #include <impm/grid/rigid_bodies.h>
 #include <impm/grid/step_result.h>
+#include <impm/input/sections/boundary_conditions.h>
 #include <impm/points/material_points.h>
 
 #include <array>
@@ -55,8 +56,7 @@ namespace impm
   /** The policy that a scene names: every one stands in here. */
   template <int dim>
   std::unique_ptr<GridPolicy<dim>>
-  make_grid_policy(const GridSpec<dim>                      &spec,
-                   const std::array<FaceSpec<dim>, 2 * dim> &faces);
+  make_grid_policy(const GridSpec<dim> &spec, const Faces<dim> &faces);
 
   /**
    * Refines and coarsens the cells that are flagged and takes points and rigid

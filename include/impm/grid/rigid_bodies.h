@@ -20,7 +20,9 @@ namespace impm
   class RigidBodies
   {
   public:
-    RigidBodies(const Scene<dim> &scene, const BackgroundGrid<dim> &grid);
+    RigidBodies(const Bodies<dim>         &specs,
+                GeometryKind               geometry,
+                const BackgroundGrid<dim> &grid);
 
     unsigned int
     size() const

@@ -3,6 +3,7 @@
 
 #include <impm/grid/background_grid.h>
 #include <impm/grid/rigid_bodies.h>
+#include <impm/input/sections/boundary_conditions.h>
 
 #include <array>
 #include <string>
@@ -27,14 +28,12 @@ namespace impm
   class StepConstraints
   {
   public:
-    using Faces = std::array<FaceSpec<dim>, 2 * dim>;
-
     /**
      * For the step from `time` to `time + dt`. `support` is positive where a
      * node that is not hanging has material; its ghosts are up to date.
      * Collective.
      */
-    StepConstraints(const Faces               &faces,
+    StepConstraints(const Faces<dim>          &faces,
                     const BackgroundGrid<dim> &grid,
                     const Discretization<dim> &discretization,
                     const RigidBodies<dim>    &rigid,
@@ -121,7 +120,7 @@ namespace impm
                double       time,
                double       dt) const;
 
-    const Faces               &faces;
+    const Faces<dim>          &faces;
     const BackgroundGrid<dim> &grid;
     const Discretization<dim> &discretization;
     const RigidBodies<dim>    &rigid;

@@ -85,6 +85,10 @@ namespace impm
     std::unique_ptr<dealii::ParameterHandler> prm;
   };
 
+  /** What the entries of a handler, which stands at the top, say. */
+  ParameterFile::Chosen
+  chosen_in(dealii::ParameterHandler &prm);
+
   /** Splits "a, b ,c" and drops what is empty. */
   std::vector<std::string>
   split_names(const std::string &list);
@@ -98,11 +102,23 @@ namespace impm
              const std::string           &path,
              const std::function<void()> &action);
 
+  /** Declares an entry that may hold anything and is empty by default. */
+  void
+  declare_text(dealii::ParameterHandler &prm,
+               const std::string        &entry,
+               const std::string        &documentation);
+
   /** Reads a list of `n` numbers; throws InputError if there are others. */
   std::vector<double>
   get_numbers(const dealii::ParameterHandler &prm,
               const std::string              &entry,
               unsigned int                    n);
+
+  /** Throws InputError for a name that is not among those allowed. */
+  void
+  require_name(const std::vector<std::string> &allowed,
+               const std::string              &found,
+               const std::string              &entry);
 } // namespace impm
 
 #endif

@@ -2,6 +2,7 @@
 #define impm_output_history_h
 
 #include <impm/balance/step_problem.h>
+#include <impm/input/sections/output.h>
 #include <impm/points/point_fields.h>
 
 #include <fstream>
@@ -49,7 +50,7 @@ namespace impm
   /** Names of the columns of history.csv in their order. */
   template <int dim>
   std::vector<std::string>
-  history_columns(const Scene<dim> &scene);
+  history_columns(const OutputSpec &output, GeometryKind geometry);
 
   /** history.csv: a header line, then rows, each on disk at once. */
   template <int dim>
@@ -60,7 +61,9 @@ namespace impm
      * Finds the points that probes follow. Throws InputError for a probe that
      * asks for what this scene does not have. Writes nothing. Collective.
      */
-    History(const Scene<dim>          &scene,
+    History(const OutputSpec          &output,
+            const Faces<dim>          &faces,
+            const Bodies<dim>         &bodies,
             const MaterialPoints<dim> &points,
             const RigidBodies<dim>    &rigid,
             const BackgroundGrid<dim> &grid);
@@ -89,6 +92,9 @@ namespace impm
       remembers = true;
     }
 
+    /** Those of every row. */
+    const std::vector<std::string> columns;
+
     /** A column of the rows so far, on the first rank. */
     std::vector<double>
     column(const std::string &name) const;
@@ -109,7 +115,9 @@ namespace impm
       double                         id = -1; ///< of the point, if it is one
     };
 
-    const Scene<dim>                           &scene;
+    const OutputSpec                           &output;
+    const Faces<dim>                           &faces;
+    const Bodies<dim>                          &bodies;
     const MaterialPoints<dim>                  &points;
     const RigidBodies<dim>                     &rigid;
     const BackgroundGrid<dim>                  &grid;
@@ -118,7 +126,6 @@ namespace impm
     std::array<double, 2 * dim>                 face_start;
     std::vector<std::pair<std::string, double>> figures;
     std::ofstream                               file;
-    const std::vector<std::string>              columns;
     std::vector<std::vector<double>>            rows;
     bool                                        remembers = false;
   };

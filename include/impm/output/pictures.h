@@ -2,6 +2,7 @@
 #define impm_output_pictures_h
 
 #include <impm/grid/rigid_bodies.h>
+#include <impm/input/sections/output.h>
 #include <impm/points/point_fields.h>
 
 #include <string>
@@ -18,7 +19,6 @@ namespace impm
   class Pictures
   {
   public:
-    /** Throws InputError when a field has no known name. */
     Pictures(const OutputSpec          &spec,
              const MaterialPoints<dim> &points,
              const RigidBodies<dim>    &rigid,
@@ -31,9 +31,6 @@ namespace impm
      */
     void
     write(const std::string &directory, double time, const Vector *u);
-
-    static void
-    check_fields(const OutputSpec &spec);
 
   private:
     const MaterialPoints<dim>   &points;

@@ -4,8 +4,9 @@
 #include <deal.II/particles/particle_handler.h>
 
 #include <impm/grid/background_grid.h>
+#include <impm/input/sections/bodies.h>
+#include <impm/input/sections/loads.h>
 #include <impm/points/point_layout.h>
-#include <impm/scene/scene.h>
 #include <impm/scene/seeding.h>
 
 #include <algorithm>
@@ -61,12 +62,16 @@ namespace impm
   class MaterialPoints
   {
   public:
-    /** Decides which fields the points of this scene carry. */
-    static PointLayout
-    choose_layout(const Scene<dim> &scene);
-
-    /** Fills the bodies of the scene with points. Collective. */
-    MaterialPoints(const Scene<dim> &scene, const BackgroundGrid<dim> &grid);
+    /**
+     * Fills the bodies with points that carry a layout, which ends with that
+     * of the laws' history. Throws InputError where seed_body() or
+     * check_tractions() does. Collective.
+     */
+    MaterialPoints(const PointLayout         &layout,
+                   const PointLayout         &history,
+                   const Bodies<dim>         &bodies,
+                   const Tractions<dim>      &tractions,
+                   const BackgroundGrid<dim> &grid);
 
     /** Sorts the points into cells and takes their addresses. Collective. */
     void

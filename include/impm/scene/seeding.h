@@ -2,7 +2,7 @@
 #define impm_scene_seeding_h
 
 #include <impm/grid/background_grid.h>
-#include <impm/scene/scene.h>
+#include <impm/input/sections/bodies.h>
 
 #include <vector>
 
@@ -27,8 +27,9 @@ namespace impm
    */
   template <int dim>
   std::vector<Seed<dim>>
-  seed_body(const Scene<dim>          &scene,
+  seed_body(const Bodies<dim>         &bodies,
             const BodySpec<dim>       &body,
+            GeometryKind               geometry,
             const BackgroundGrid<dim> &grid);
 } // namespace impm
 

@@ -1,7 +1,7 @@
 #ifndef impm_solve_convergence_test_h
 #define impm_solve_convergence_test_h
 
-#include <impm/scene/scene.h>
+#include <impm/input/sections/solver.h>
 #include <impm/solve/nonlinear_system.h>
 
 #include <vector>

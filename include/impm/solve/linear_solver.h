@@ -3,7 +3,7 @@
 
 #include <deal.II/base/timer.h>
 
-#include <impm/scene/scene.h>
+#include <impm/input/sections/solver.h>
 #include <impm/solve/difference_quotient.h>
 #include <impm/solve/sparse_matrix.h>
 
@@ -70,15 +70,15 @@ namespace impm
     solves_for_momentum() const
     {
       return system.weight_of_unknowns() != nullptr &&
-             spec.preconditioner == "none";
+             spec.preconditioner == PreconditionerKind::none;
     }
 
     bool
     needs_matrix() const
     {
-      return spec.linear_solver == "direct" ||
+      return spec.linear_solver == LinearSolverKind::direct ||
              spec.tangent == TangentKind::matrix ||
-             spec.preconditioner == "AMG";
+             spec.preconditioner == PreconditionerKind::amg;
     }
 
     const SolverSpec    &spec;

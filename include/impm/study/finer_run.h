@@ -22,10 +22,10 @@ namespace impm
      * `directory`. Throws InputError when one cannot be; writes nothing.
      * Collective.
      */
-    FinerRunner(const Scene<dim>  &scene,
-                const CommandLine &line,
-                const std::string &directory,
-                MPI_Comm           communicator);
+    FinerRunner(const std::vector<ReferenceSpec<dim>> &references,
+                const CommandLine                     &line,
+                const std::string                     &directory,
+                MPI_Comm                               communicator);
 
     /**
      * Makes each, unless its directory holds it. Throws ComputationError if

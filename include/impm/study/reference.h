@@ -2,6 +2,7 @@
 #define impm_study_reference_h
 
 #include <impm/base/csv.h>
+#include <impm/input/sections/reference.h>
 #include <impm/output/history.h>
 #include <impm/output/summary.h>
 
@@ -30,9 +31,12 @@ namespace impm
      * Makes the history remember what is wanted of it. Throws InputError for
      * fields, bodies, columns and times that this scene does not have.
      */
-    Reference(const Scene<dim>          &scene,
-              const MaterialPoints<dim> &points,
-              History<dim>              &history);
+    Reference(const std::vector<ReferenceSpec<dim>> &references,
+              const Bodies<dim>                     &bodies,
+              const OutputSpec                      &output,
+              const TimeSpec                        &time,
+              const MaterialPoints<dim>             &points,
+              History<dim>                          &history);
 
     /** Whether some error is the largest over the rows of the history. */
     bool
@@ -64,10 +68,13 @@ namespace impm
     };
 
     void
-    check_columns(const Spec &spec) const;
+    check_columns(const Spec &spec, double end_time) const;
 
     void
-    prepare_field(const Spec &spec, Follower &follower) const;
+    prepare_field(const Spec        &spec,
+                  const Bodies<dim> &bodies,
+                  double             fringe_number,
+                  Follower          &follower) const;
 
     FieldNorms
     compare_field(const Spec     &spec,
@@ -82,7 +89,7 @@ namespace impm
                    const std::string &column,
                    const FinerRun    *finer) const;
 
-    const Scene<dim>          &scene;
+    const std::vector<Spec>   &references;
     const MaterialPoints<dim> &points;
     const History<dim>        &history;
     std::vector<Follower>      followers; ///< by reference

@@ -1,7 +1,7 @@
 #ifndef impm_time_step_control_h
 #define impm_time_step_control_h
 
-#include <impm/scene/scene.h>
+#include <impm/input/sections/time.h>
 
 namespace impm
 {

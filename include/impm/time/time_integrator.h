@@ -2,7 +2,7 @@
 #define impm_time_time_integrator_h
 
 #include <impm/base/vector.h>
-#include <impm/scene/scene.h>
+#include <impm/input/sections/time.h>
 
 #include <memory>
 

@@ -11,7 +11,8 @@ namespace impm
 
   template <int dim>
   void
-  add_face_tractions(const Scene<dim>          &scene,
+  add_face_tractions(const Faces<dim>          &faces,
+                     const GeometryKind         geometry,
                      const BackgroundGrid<dim> &grid,
                      const PopulatedCells<dim> &populated,
                      const double               instant,
@@ -31,7 +32,7 @@ namespace impm
           {
             if (!cell->face(f)->at_boundary())
               continue;
-            const auto &spec = scene.faces[cell->face(f)->boundary_id()];
+            const auto &spec = faces[cell->face(f)->boundary_id()];
             if (!spec.traction)
               continue;
             spec.traction->set_time(instant);
@@ -41,10 +42,9 @@ namespace impm
               {
                 const auto &x = values.quadrature_point(q);
                 spec.traction->vector_value(x, traction);
-                const double around =
-                  scene.geometry == GeometryKind::axisymmetric ?
-                    2 * numbers::PI * x[0] :
-                    1.;
+                const double around = geometry == GeometryKind::axisymmetric ?
+                                        2 * numbers::PI * x[0] :
+                                        1.;
                 for (unsigned int v = 0; v < nodes.size(); ++v)
                   for (unsigned int c = 0; c < dim; ++c)
                     force.local_element(dim * nodes[v] + c) +=
@@ -55,14 +55,16 @@ namespace impm
   }
 
   template void
-  add_face_tractions(const Scene<2> &,
+  add_face_tractions(const Faces<2> &,
+                     GeometryKind,
                      const BackgroundGrid<2> &,
                      const PopulatedCells<2> &,
                      double,
                      double,
                      Vector &);
   template void
-  add_face_tractions(const Scene<3> &,
+  add_face_tractions(const Faces<3> &,
+                     GeometryKind,
                      const BackgroundGrid<3> &,
                      const PopulatedCells<3> &,
                      double,

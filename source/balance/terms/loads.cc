@@ -19,22 +19,22 @@ namespace impm
   {
     template <int dim>
     void
-    add_body_force(const Scene<dim>          &scene,
+    add_body_force(const LoadsSpec<dim>      &spec,
                    const MaterialPoints<dim> &points,
                    const Footprints<dim>     &footprints,
                    const double               instant,
                    Vector                    &load)
     {
-      scene.body_force->set_time(instant);
+      spec.body_force->set_time(instant);
       dealii::Vector<double>      value(dim);
       std::vector<Tensor<1, dim>> forces(points.size());
       unsigned int                p = 0;
       for (const auto &particle : points.sorted.particles)
         {
-          scene.body_force->vector_value(scene.body_force_is_initial ?
-                                           points.initial_position(p) :
-                                           particle.get_location(),
-                                         value);
+          spec.body_force->vector_value(spec.body_force_is_initial ?
+                                          points.initial_position(p) :
+                                          particle.get_location(),
+                                        value);
           for (unsigned int c = 0; c < dim; ++c)
             forces[p][c] = -points.mass(p) * value[c];
           ++p;
@@ -45,7 +45,8 @@ namespace impm
 
   template <int dim>
   Vector
-  gather_loads(const Scene<dim>          &scene,
+  gather_loads(const LoadsSpec<dim>      &spec,
+               const Faces<dim>          &faces,
                const MaterialPoints<dim> &points,
                const Footprints<dim>     &footprints,
                const BackgroundGrid<dim> &grid,
@@ -55,18 +56,20 @@ namespace impm
   {
     Vector load;
     discretization.initialize(load);
-    if (scene.body_force)
-      add_body_force(scene, points, footprints, instant, load);
-    add_point_tractions(scene, points, footprints, instant, -1., load);
+    if (spec.body_force)
+      add_body_force(spec, points, footprints, instant, load);
+    add_point_tractions(spec.tractions, points, footprints, instant, -1., load);
     if (grid.is_lagrangian)
-      add_face_tractions(scene, grid, populated, instant, -1., load);
+      add_face_tractions(
+        faces, points.layout.geometry, grid, populated, instant, -1., load);
     load.compress(VectorOperation::add);
     discretization.condense_hanging(load);
     return load;
   }
 
   template Vector
-  gather_loads(const Scene<2> &,
+  gather_loads(const LoadsSpec<2> &,
+               const Faces<2> &,
                const MaterialPoints<2> &,
                const Footprints<2> &,
                const BackgroundGrid<2> &,
@@ -74,7 +77,8 @@ namespace impm
                const PopulatedCells<2> &,
                double);
   template Vector
-  gather_loads(const Scene<3> &,
+  gather_loads(const LoadsSpec<3> &,
+               const Faces<3> &,
                const MaterialPoints<3> &,
                const Footprints<3> &,
                const BackgroundGrid<3> &,

@@ -23,11 +23,11 @@ namespace impm
 
   template <int dim>
   std::vector<types::particle_index>
-  count_points_under_tractions(const Scene<dim>          &scene,
+  count_points_under_tractions(const Tractions<dim>      &tractions,
                                const MaterialPoints<dim> &points)
   {
     std::vector<types::particle_index> counts;
-    for (const auto &traction : scene.tractions)
+    for (const auto &traction : tractions)
       {
         const unsigned int area =
           points.layout.offset(traction_field(traction));
@@ -41,13 +41,14 @@ namespace impm
 
   template <int dim>
   void
-  check_tractions(const Scene<dim> &scene, const MaterialPoints<dim> &points)
+  check_tractions(const Tractions<dim>      &tractions,
+                  const MaterialPoints<dim> &points)
   {
-    const auto counts = count_points_under_tractions(scene, points);
+    const auto counts = count_points_under_tractions(tractions, points);
     for (unsigned int t = 0; t < counts.size(); ++t)
       if (counts[t] == 0)
-        throw InputError("Loads/" + scene.tractions[t].name + "/Where",
-                         "found no point of body '" + scene.tractions[t].body +
+        throw InputError("Loads/" + tractions[t].name + "/Where",
+                         "found no point of body '" + tractions[t].body +
                            "' where the expression is positive, allowed is "
                            "one that picks a layer of points: they lie inside "
                            "the surface, the first half their extent");
@@ -55,18 +56,18 @@ namespace impm
 
   template <int dim>
   void
-  add_point_tractions(const Scene<dim>          &scene,
+  add_point_tractions(const Tractions<dim>      &tractions,
                       const MaterialPoints<dim> &points,
                       const Footprints<dim>     &footprints,
                       const double               instant,
                       const double               factor,
                       Vector                    &force)
   {
-    if (scene.tractions.empty())
+    if (tractions.empty())
       return;
     std::vector<Tensor<1, dim>> forces(points.size());
     dealii::Vector<double>      value(dim);
-    for (const auto &traction : scene.tractions)
+    for (const auto &traction : tractions)
       {
         const unsigned int offset =
           points.layout.offset(traction_field(traction));
@@ -98,22 +99,22 @@ namespace impm
   template double
   traction_area(const TractionSpec<3> &, const Seed<3> &);
   template std::vector<types::particle_index>
-  count_points_under_tractions(const Scene<2> &, const MaterialPoints<2> &);
+  count_points_under_tractions(const Tractions<2> &, const MaterialPoints<2> &);
   template std::vector<types::particle_index>
-  count_points_under_tractions(const Scene<3> &, const MaterialPoints<3> &);
+  count_points_under_tractions(const Tractions<3> &, const MaterialPoints<3> &);
   template void
-  check_tractions(const Scene<2> &, const MaterialPoints<2> &);
+  check_tractions(const Tractions<2> &, const MaterialPoints<2> &);
   template void
-  check_tractions(const Scene<3> &, const MaterialPoints<3> &);
+  check_tractions(const Tractions<3> &, const MaterialPoints<3> &);
   template void
-  add_point_tractions(const Scene<2> &,
+  add_point_tractions(const Tractions<2> &,
                       const MaterialPoints<2> &,
                       const Footprints<2> &,
                       double,
                       double,
                       Vector &);
   template void
-  add_point_tractions(const Scene<3> &,
+  add_point_tractions(const Tractions<3> &,
                       const MaterialPoints<3> &,
                       const Footprints<3> &,
                       double,

@@ -272,7 +272,7 @@ TEST(Scene, IsWhatTheFileSays)
                 "Boundary conditions/right/Type=normal displacement",
                 "Boundary conditions/right/Value=speed",
                 "Loads/Body force=0; -9.81"});
-  EXPECT_TRUE(scene.has_inertia());
+  EXPECT_TRUE(scene.time.has_inertia());
   EXPECT_EQ(scene.time.theta, 0.75);
   EXPECT_EQ(scene.bodies.size(), 1u);
   EXPECT_EQ(scene.bodies[0].material->density, 1.);
@@ -289,5 +289,5 @@ TEST(Scene, IsWhatTheFileSays)
   top.value->set_time(2.);
   EXPECT_EQ(top.value->value({0.3, 0.2}, 0), 0.3);
   EXPECT_EQ(top.value->value({0.3, 0.2}, 1), -6.);
-  EXPECT_EQ(scene.body_force->value({0, 0}, 1), -9.81);
+  EXPECT_EQ(scene.loads.body_force->value({0, 0}, 1), -9.81);
 }

@@ -233,16 +233,13 @@ TEST(MaterialPoints, CarryOnlyWhatTheSceneNeeds)
 {
   using Names       = std::vector<std::string>;
   const auto choose = [](const std::string &kind, const Overrides &overrides) {
-    return MaterialPoints<2>::choose_layout(
-      scene_from<2>(block_scene(kind), overrides));
+    return choose_layout(scene_from<2>(block_scene(kind), overrides));
   };
   const Names bare = {"body", "initial_volume", "deformation_gradient"};
   EXPECT_EQ(names_of(choose("plane strain", {})), bare);
   EXPECT_EQ(choose("plane strain", {}).size(), 2 + 4u);
   EXPECT_EQ(choose("axisymmetric", {}).size(), 2 + 5u);
-  EXPECT_EQ(
-    MaterialPoints<3>::choose_layout(scene_from<3>(block_scene("3D"))).size(),
-    2 + 9u);
+  EXPECT_EQ(choose_layout(scene_from<3>(block_scene("3D"))).size(), 2 + 9u);
 
   const auto moving = choose("plane strain", with_inertia);
   EXPECT_TRUE(moving.has("velocity"));

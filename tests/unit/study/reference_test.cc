@@ -364,7 +364,10 @@ TEST(ReferenceMpi, FinerRunIsMadeOnce)
   const auto errors = [&]() {
     ParameterFile        parameters(file.name, line.overrides, declare_scene);
     const auto           scene = read_scene<2>(parameters.handler());
-    const FinerRunner<2> finer(scene, line, directory, MPI_COMM_WORLD);
+    const FinerRunner<2> finer(scene.references,
+                               line,
+                               directory,
+                               MPI_COMM_WORLD);
     Simulation<2>        simulation(scene,
                              CommandLine::Verbosity::quiet,
                              MPI_COMM_WORLD);

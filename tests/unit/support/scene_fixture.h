@@ -7,6 +7,7 @@
 #include <impm/footprints/scatter.h>
 #include <impm/grid/grid_policy.h>
 #include <impm/run/solve_step.h>
+#include <impm/scene/layout_choice.h>
 
 #include <unistd.h>
 
@@ -169,8 +170,12 @@ namespace impm
               dealii::TimerOutput::never,
               dealii::TimerOutput::wall_times)
       , grid(scene.grid, communicator)
-      , points(scene, grid)
-      , rigid(scene, grid)
+      , points(choose_layout(scene),
+               *scene.history,
+               scene.bodies,
+               scene.loads.tractions,
+               grid)
+      , rigid(scene.bodies, scene.geometry, grid)
       , policy(make_grid_policy(scene.grid, scene.faces))
       , integrator(make_time_integrator(scene.time))
       , builder(make_footprint_builder(scene.grid))

@@ -16,7 +16,7 @@ namespace
   newmark(const double beta, const double gamma, const bool keeps)
   {
     TimeSpec spec;
-    spec.integrator         = "Newmark";
+    spec.integrator         = Integrator::newmark;
     spec.beta               = beta;
     spec.gamma              = gamma;
     spec.keeps_acceleration = keeps;
@@ -27,7 +27,7 @@ namespace
   theta(const double value)
   {
     TimeSpec spec;
-    spec.integrator = "theta";
+    spec.integrator = Integrator::theta;
     spec.theta      = value;
     return spec;
   }
@@ -108,7 +108,7 @@ TEST(TimeIntegrator, OscillationsGrowBeyondTheLimitOnly)
       all.push_back(newmark(beta, gamma, keeps));
   for (const auto &spec : all)
     {
-      SCOPED_TRACE(spec.integrator + " " + std::to_string(spec.theta) + " " +
+      SCOPED_TRACE(std::to_string(spec.theta) + " " +
                    std::to_string(spec.beta) + " " +
                    std::to_string(spec.gamma));
       const double limit = make_time_integrator(spec)->stable_step(1.);

@@ -2,6 +2,7 @@
 #define impm_balance_terms_face_traction_h
 
 #include <impm/grid/populated_cells.h>
+#include <impm/input/sections/boundary_conditions.h>
 
 namespace impm
 {
@@ -13,7 +14,8 @@ namespace impm
    */
   template <int dim>
   void
-  add_face_tractions(const Scene<dim>          &scene,
+  add_face_tractions(const Faces<dim>          &faces,
+                     GeometryKind               geometry,
                      const BackgroundGrid<dim> &grid,
                      const PopulatedCells<dim> &populated,
                      double                     instant,

@@ -4,9 +4,24 @@
 #include <impm/balance/terms/term.h>
 #include <impm/footprints/footprints.h>
 #include <impm/grid/populated_cells.h>
+#include <impm/input/sections/boundary_conditions.h>
+#include <impm/input/sections/loads.h>
+
+#include <algorithm>
 
 namespace impm
 {
+  /** Whether anything acts from outside but what is prescribed. */
+  template <int dim>
+  bool
+  has_loads(const LoadsSpec<dim> &spec, const Faces<dim> &faces)
+  {
+    return spec.body_force || !spec.tractions.empty() ||
+           std::any_of(faces.begin(), faces.end(), [](const auto &face) {
+             return face.traction != nullptr;
+           });
+  }
+
   /**
    * Minus the forces from outside at an instant (N), with nothing at hanging
    * nodes: body force, tractions on points, on faces of a Lagrangian grid.
@@ -14,7 +29,8 @@ namespace impm
    */
   template <int dim>
   Vector
-  gather_loads(const Scene<dim>          &scene,
+  gather_loads(const LoadsSpec<dim>      &spec,
+               const Faces<dim>          &faces,
                const MaterialPoints<dim> &points,
                const Footprints<dim>     &footprints,
                const BackgroundGrid<dim> &grid,

@@ -19,16 +19,17 @@ namespace impm
   double
   traction_area(const TractionSpec<dim> &traction, const Seed<dim> &seed);
 
-  /** Number of points that carry each traction of the scene. Collective. */
+  /** Number of points that carry each traction. Collective. */
   template <int dim>
   std::vector<dealii::types::particle_index>
-  count_points_under_tractions(const Scene<dim>          &scene,
+  count_points_under_tractions(const Tractions<dim>      &tractions,
                                const MaterialPoints<dim> &points);
 
   /** Throws InputError for a traction without a point. Collective. */
   template <int dim>
   void
-  check_tractions(const Scene<dim> &scene, const MaterialPoints<dim> &points);
+  check_tractions(const Tractions<dim>      &tractions,
+                  const MaterialPoints<dim> &points);
 
   /**
    * Adds `factor` times the nodal forces (N) of the tractions on points at an
@@ -37,7 +38,7 @@ namespace impm
    */
   template <int dim>
   void
-  add_point_tractions(const Scene<dim>          &scene,
+  add_point_tractions(const Tractions<dim>      &tractions,
                       const MaterialPoints<dim> &points,
                       const Footprints<dim>     &footprints,
                       double                     instant,

@@ -49,7 +49,8 @@ namespace
       all += override + ", ";
     SCOPED_TRACE(all);
     Model<dim> model(text, overrides);
-    EXPECT_EQ(count_points_under_tractions(model.scene, model.points),
+    EXPECT_EQ(count_points_under_tractions(model.scene.loads.tractions,
+                                           model.points),
               std::vector<types::particle_index>{n_points});
     model.scatter_points(3); // wherever they are
     model.begin_step();

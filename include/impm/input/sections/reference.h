@@ -1,12 +1,12 @@
-#ifndef impm_study_reference_spec_h
-#define impm_study_reference_spec_h
+#ifndef impm_input_sections_reference_h
+#define impm_input_sections_reference_h
 
 #include <deal.II/base/function_parser.h>
 
 #include <impm/input/parameter_file.h>
+#include <impm/input/sections/general.h>
 #include <impm/study/curve.h>
 
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,17 +14,19 @@
 
 namespace impm
 {
+  enum class ReferenceKind
+  {
+    field,    ///< at the points
+    probe,    ///< a figure of the history at one time
+    curve,    ///< a column of the history over another
+    finer_run ///< columns of the history of this scene with other entries
+  };
+
   /** What a scene should give, and how the difference is measured. */
   template <int dim>
   struct ReferenceSpec
   {
-    enum class Kind
-    {
-      field,    ///< at the points
-      probe,    ///< a figure of the history at one time
-      curve,    ///< a column of the history over another
-      finer_run ///< columns of the history of this scene with other entries
-    };
+    using Kind = ReferenceKind;
     std::string name;
     Kind        kind;
     Norm        norm = Norm::max;
@@ -48,20 +50,27 @@ namespace impm
     std::string              directory; ///< empty: in that of this run
   };
 
-  /** Declares the section Reference. */
+  const std::string &
+  name_of(Norm norm);
+
   void
   declare_references(dealii::ParameterHandler    &prm,
                      const ParameterFile::Chosen &chosen);
 
   /**
-   * Reads it from inside the section. Files are looked for beside the
-   * parameter file, then in the working directory.
+   * Files are looked for beside the parameter file, then in the working
+   * directory.
    */
   template <int dim>
   std::vector<ReferenceSpec<dim>>
-  read_references(dealii::ParameterHandler            &prm,
-                  const std::map<std::string, double> &constants,
-                  const std::string                   &parameter_file);
+  read_references(dealii::ParameterHandler &prm,
+                  const Constants          &constants,
+                  const std::string        &parameter_file);
+
+  /** What the points and the history of a scene say is checked by Reference. */
+  template <int dim>
+  void
+  check_references(const std::vector<ReferenceSpec<dim>> &references);
 } // namespace impm
 
 #endif

@@ -1,0 +1,92 @@
+#ifndef impm_input_choice_h
+#define impm_input_choice_h
+
+#include <deal.II/base/parameter_handler.h>
+#include <deal.II/base/patterns.h>
+
+#include <impm/base/names.h>
+#include <impm/input/parameter_file.h>
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace impm
+{
+  /**
+   * An entry that takes one of a few names, each of which stands for a value:
+   * the one place that knows the names. The first one is the default.
+   */
+  template <typename Value>
+  class Choice
+  {
+  public:
+    struct Option
+    {
+      std::string name;
+      Value       value;
+    };
+
+    Choice(const std::string &entry, const std::vector<Option> &options)
+      : entry(entry)
+      , options(options)
+    {}
+
+    /** In the subsection where the handler stands. */
+    void
+    declare(dealii::ParameterHandler &prm,
+            const std::string        &documentation) const
+    {
+      prm.declare_entry(entry,
+                        options.front().name,
+                        dealii::Patterns::Selection(
+                          join(names_of(options), "|")),
+                        documentation);
+    }
+
+    Value
+    read(const dealii::ParameterHandler &prm) const
+    {
+      const std::string name = prm.get(entry);
+      for (const auto &option : options)
+        if (option.name == name)
+          return option.value;
+      throw std::logic_error(entry + ": no choice is called '" + name + "'");
+    }
+
+    const std::string &
+    name_of(const Value value) const
+    {
+      for (const auto &option : options)
+        if (option.value == value)
+          return option.name;
+      throw std::logic_error(entry + ": a choice has no name");
+    }
+
+    /** Whether the value is chosen in a section ("Output/probe"). */
+    bool
+    is(const ParameterFile::Chosen &chosen,
+       const std::string           &section,
+       const Value                  value) const
+    {
+      return chosen(section + "/" + entry, options.front().name) ==
+             name_of(value);
+    }
+
+    /** The same, or where "any" stands for all of them. */
+    bool
+    may_be(const ParameterFile::Chosen &chosen,
+           const std::string           &section,
+           const Value                  value) const
+    {
+      return is(chosen, section, value) ||
+             chosen(section + "/" + entry, "") == "any";
+    }
+
+  private:
+    std::string         entry;
+    std::vector<Option> options;
+  };
+} // namespace impm
+
+#endif

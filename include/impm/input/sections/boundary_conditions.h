@@ -1,0 +1,64 @@
+#ifndef impm_input_sections_boundary_conditions_h
+#define impm_input_sections_boundary_conditions_h
+
+#include <deal.II/base/function_parser.h>
+
+#include <impm/input/parameter_file.h>
+#include <impm/input/sections/general.h>
+#include <impm/input/sections/grid.h>
+#include <impm/input/sections/time.h>
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace impm
+{
+  /** What holds on one face of the domain. */
+  template <int dim>
+  struct FaceSpec
+  {
+    std::string           name;
+    std::array<bool, dim> constrained{}; ///< which components are prescribed
+    bool                  moves_grid  = false;
+    bool                  is_velocity = false;
+    /** Prescribed displacement or velocity in (x, t); null means zero. */
+    std::shared_ptr<dealii::FunctionParser<dim>> value;
+    /** Force per initial area (Pa), or null. */
+    std::shared_ptr<dealii::FunctionParser<dim>> traction;
+  };
+
+  template <int dim>
+  using Faces = std::array<FaceSpec<dim>, 2 * dim>;
+
+  /** Names of the faces in deal.II's order: left right bottom top back front.
+   */
+  const std::vector<std::string> &
+  face_names();
+
+  void
+  declare_boundary_conditions(dealii::ParameterHandler    &prm,
+                              const ParameterFile::Chosen &chosen);
+
+  template <int dim>
+  Faces<dim>
+  read_boundary_conditions(dealii::ParameterHandler &prm,
+                           bool                      lagrangian,
+                           const Constants          &constants);
+
+  /** At most one face moves the grid. */
+  template <int dim>
+  void
+  check_faces(const Faces<dim> &faces, const GridSpec<dim> &grid);
+
+  /** Warns of faces that are to move and will lose their material. */
+  template <int dim>
+  void
+  warn_of_faces(const Faces<dim>         &faces,
+                const GridSpec<dim>      &grid,
+                const TimeSpec           &time,
+                std::vector<std::string> &warnings);
+} // namespace impm
+
+#endif

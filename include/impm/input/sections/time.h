@@ -1,0 +1,74 @@
+#ifndef impm_input_sections_time_h
+#define impm_input_sections_time_h
+
+#include <impm/input/parameter_file.h>
+
+#include <string>
+#include <vector>
+
+namespace impm
+{
+  enum class Integrator
+  {
+    quasi_static, ///< no inertia, and thus no velocity
+    explicit_euler,
+    theta,
+    newmark
+  };
+
+  /** How velocities come from the grid to the points. */
+  enum class TransferKind
+  {
+    flip,
+    pic,
+    apic
+  };
+
+  struct TimeSpec
+  {
+    Integrator integrator;
+    double     theta = 1;
+    double     beta = 0.25, gamma = 0.5;   ///< of Newmark's method
+    bool       keeps_acceleration = false; ///< at the points
+    /** Strain from a velocity that has been through the points. */
+    bool         momentum_formulation = false;
+    double       cfl_number           = 0; ///< 0: `step` is given
+    TransferKind transfer             = TransferKind::flip;
+    double       end, step, growth, largest_step, smallest_step;
+    unsigned int largest_number_of_steps;
+
+    bool
+    has_inertia() const
+    {
+      return integrator != Integrator::quasi_static;
+    }
+
+    bool
+    is_explicit() const
+    {
+      return integrator == Integrator::explicit_euler;
+    }
+  };
+
+  void
+  declare_time(dealii::ParameterHandler    &prm,
+               const ParameterFile::Chosen &chosen);
+
+  /** While entries are declared: whether only, or possibly, without inertia. */
+  bool
+  is_quasi_static(const ParameterFile::Chosen &chosen);
+  bool
+  may_be_quasi_static(const ParameterFile::Chosen &chosen);
+
+  bool
+  is_explicit(const ParameterFile::Chosen &chosen);
+
+  TimeSpec
+  read_time(dealii::ParameterHandler &prm, bool lagrangian);
+
+  /** Adds to the warnings of the scene. */
+  void
+  check_time(const TimeSpec &time, std::vector<std::string> &warnings);
+} // namespace impm
+
+#endif

@@ -301,7 +301,7 @@ TEST(MomentumBalanceMpi, DerivativesOfFiniteElements)
 {
   const Overrides fitted = {"Grid/Method=Lagrangian",
                             "Geometry/box/Upper corner=0.75, 0.5"};
-  const Overrides skew   = {"Grid/Map=x + 0.1*y; y*(1 - 0.2*x)",
+  const Overrides skew   = {"Grid/Map=x + 0.1*x*y; y*(1 - 0.2*x)",
                             "Geometry/box/Lower corner=-9, -9",
                             "Geometry/box/Upper corner=9, 9",
                             "Boundary conditions/right/Type=traction",

@@ -291,3 +291,31 @@ TEST(NewtonSolverMpi, DirectSolverTakesOverFromTheDifferenceQuotient)
   for (unsigned int k = 0; k < exact.size(); ++k)
     EXPECT_NEAR(found[k], exact[k], 1e-6 * exact[k] + 1e-13) << k;
 }
+
+
+// A system that nothing makes regular fails its step: no exception, no word of
+// the libraries, no file.
+TEST(NewtonSolver, SingularSystemFailsTheStep)
+{
+  const TemporaryFile points("x,y,volume\n0.3,0.4,0.01\n", ".csv");
+  for (const std::string solver : {"direct", "CG"})
+    {
+      SCOPED_TRACE(solver);
+      Model<2>     model(block_scene("plane strain"),
+                     {"Bodies/block/Points from=file",
+                          "Bodies/block/File=" + points.name,
+                          "Boundary conditions/left/Type=displacement",
+                          "Boundary conditions/left/Value=0.01*t; 0",
+                          "Loads/Body force=1; 0",
+                          "Stabilization/Isolated stiffness=0",
+                          "Stabilization/Ghost penalty=0",
+                          "Solver/Linear solver=" + solver},
+                     MPI_COMM_SELF);
+      impm::Vector u;
+      testing::internal::CaptureStdout();
+      const auto result = model.solve(u);
+      EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+      EXPECT_FALSE(result.converged);
+      EXPECT_FALSE(std::ifstream("amesos-failure.dat"));
+    }
+}

@@ -2,6 +2,7 @@
 
 #include <deal.II/fe/fe_q.h>
 
+#include <impm/base/compat.h>
 #include <impm/grid/discretization.h>
 
 #include <algorithm>
@@ -19,7 +20,8 @@ namespace impm
     , dof_handler(triangulation)
   {
     dof_handler.distribute_dofs(fe);
-    DoFTools::extract_locally_relevant_dofs(dof_handler, locally_relevant_dofs);
+    locally_relevant_dofs =
+      DoFTools::extract_locally_relevant_dofs(dof_handler);
     const MPI_Comm communicator = triangulation.get_communicator();
     find_hanging_nodes();
     partitioner = std::make_shared<Utilities::MPI::Partitioner>(
@@ -42,7 +44,8 @@ namespace impm
   void
   NodeNumbering<dim>::find_hanging_nodes()
   {
-    hanging_nodes.reinit(locally_relevant_dofs);
+    const IndexSet &owned = dof_handler.locally_owned_dofs();
+    hanging_nodes = compat::make_constraints(owned, locally_relevant_dofs);
     DoFTools::make_hanging_node_constraints(dof_handler, hanging_nodes);
     const MPI_Comm communicator = triangulation.get_communicator();
     if (Utilities::MPI::n_mpi_processes(communicator) > 1 &&
@@ -58,7 +61,7 @@ namespace impm
         for (const auto &line : hanging_nodes.get_lines())
           for (const auto &entry : line.entries)
             locally_relevant_dofs.add_index(entry.first);
-        AffineConstraints<double> known(locally_relevant_dofs);
+        auto known = compat::make_constraints(owned, locally_relevant_dofs);
         known.merge(hanging_nodes,
                     AffineConstraints<double>::no_conflicts_allowed,
                     true);

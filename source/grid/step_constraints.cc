@@ -1,3 +1,4 @@
+#include <impm/base/compat.h>
 #include <impm/grid/step_constraints.h>
 
 namespace impm
@@ -32,7 +33,9 @@ namespace impm
     const double               time,
     const double               dt,
     const Vector              &support)
-    : constraints(discretization.numbering->locally_relevant_dofs)
+    : constraints(compat::make_constraints(
+        discretization.locally_owned_dofs(),
+        discretization.numbering->locally_relevant_dofs))
     , is_constrained(dim * discretization.node_positions.size(), false)
     , faces(faces)
     , grid(grid)

@@ -3,6 +3,7 @@
 #include <deal.II/lac/solver_control.h>
 #include <deal.II/lac/solver_gmres.h>
 
+#include <impm/base/compat.h>
 #include <impm/base/exceptions.h>
 #include <impm/solve/linear_solver.h>
 
@@ -152,7 +153,7 @@ namespace impm
     else
       {
         SolverGMRES<Vector>::AdditionalData data;
-        data.max_n_tmp_vectors     = spec.gmres_directions + 2;
+        compat::set_basis_size<Vector>(data, spec.gmres_directions);
         data.right_preconditioning = true;
         SolverGMRES<Vector> solver(control, data);
         run(solver);

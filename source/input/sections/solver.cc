@@ -85,8 +85,8 @@ namespace impm
       if (convergences.may_be(chosen, "Solver", Convergence::residual))
         {
           scales.declare(prm,
-                         "Unit of the norm of residuals. Body: that of the "
-                         "forces of all material at a strain of one. Cell: "
+                         "Unit of the norm of residuals. Body: for each body "
+                         "that of its forces at a strain of one. Cell: "
                          "largest Young's modulus times dx dy (dz) of the "
                          "smallest cell, of a radian if axisymmetric (Sulsky & "
                          "Kaul 2004, section 3.2.2). "
@@ -101,10 +101,10 @@ namespace impm
           prm.declare_entry("Newton reduction",
                             "1e-3",
                             Patterns::Double(tiny, 1),
-                            "And over that at the start of the step: where "
-                            "little happens in a step, it must be solved, too. "
-                            "1: the tolerance alone, so that the first guess "
-                            "may do.");
+                            "And over that at the start of the step and, with "
+                            "inertia, over the forces at work: where little "
+                            "happens in a step, it must be solved, too. 1: the "
+                            "tolerance alone, so that the first guess may do.");
         }
       prm.declare_entry("Newton iterations",
                         "50",

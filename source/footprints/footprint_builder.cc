@@ -93,7 +93,9 @@ namespace impm
                       const Discretization<dim> &discretization);
 
       Tensor<1, dim>
-      half_extents(const MaterialPoints<dim> &points, unsigned int p) const;
+      half_extents(const MaterialPoints<dim> &points,
+                   unsigned int               p,
+                   unsigned int               offset_domain) const;
 
       /** Appends the parts of a box [lower, upper]; their sum of weights. */
       double
@@ -147,11 +149,11 @@ namespace impm
     template <int dim>
     Tensor<1, dim>
     Boxes<dim>::half_extents(const MaterialPoints<dim> &points,
-                             const unsigned int         p) const
+                             const unsigned int         p,
+                             const unsigned int         offset_domain) const
     {
       Tensor<1, dim> half;
-      const double  *extents =
-        points.fields(p) + points.layout.offset("initial_domain");
+      const double  *extents = points.fields(p) + offset_domain;
       for (unsigned int d = 0; d < dim; ++d)
         half[d] = 0.5 * extents[d];
       if (!stretched)
@@ -210,7 +212,8 @@ namespace impm
     {
       pieces.clear();
       footprints.inverse_radius.clear();
-      this->n_limited_boxes                        = 0;
+      const unsigned int offset_domain = points.layout.offset("initial_domain");
+      this->n_limited_boxes            = 0;
       unsigned int                               p = 0;
       typename Triangulation<dim>::cell_iterator current;
       const Surroundings                        *around = nullptr;
@@ -229,7 +232,7 @@ namespace impm
                   end[d]   = start[d] + cell_extent(cell, d);
                 }
             }
-          const auto half   = half_extents(points, p);
+          const auto half   = half_extents(points, p, offset_domain);
           Point<dim> lower  = particle.get_location() - half;
           Point<dim> upper  = particle.get_location() + half;
           bool       inside = true, limited = false;

@@ -2,6 +2,7 @@
 #include <deal.II/base/utilities.h>
 
 #include <impm/base/exceptions.h>
+#include <impm/base/files.h>
 #include <impm/base/names.h>
 #include <impm/input/parameter_file.h>
 #include <impm/input/parameter_messages.h>
@@ -55,13 +56,10 @@ namespace impm
     std::string
     read_text(const std::string &file_name)
     {
-      std::ifstream file(file_name);
-      if (!file)
+      if (!std::ifstream(file_name))
         throw InputError("",
                          "cannot read the parameter file '" + file_name + "'");
-      std::ostringstream content;
-      content << file.rdbuf();
-      return content.str();
+      return content_of(file_name);
     }
 
     void

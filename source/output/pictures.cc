@@ -6,10 +6,10 @@
 #include <deal.II/numerics/data_out.h>
 
 #include <impm/base/exceptions.h>
+#include <impm/base/files.h>
 #include <impm/output/pictures.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <fstream>
 #include <sstream>
 
@@ -113,17 +113,6 @@ namespace impm
       return in_space;
     }
   } // namespace
-
-  void
-  replace_file(const std::string &name, const std::string &content)
-  {
-    const std::string temporary = name + ".new";
-    std::ofstream     file(temporary);
-    file << content;
-    file.close();
-    if (!file || std::rename(temporary.c_str(), name.c_str()) != 0)
-      throw SystemError("cannot write '" + name + "'");
-  }
 
   template <int dim>
   Pictures<dim>::Pictures(const OutputSpec          &spec,

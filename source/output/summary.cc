@@ -1,7 +1,7 @@
 #include <deal.II/base/utilities.h>
 
 #include <impm/app/version.h>
-#include <impm/output/pictures.h>
+#include <impm/base/files.h>
 #include <impm/output/summary.h>
 
 #include <nlohmann/json.hpp>

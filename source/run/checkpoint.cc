@@ -1,5 +1,5 @@
 #include <impm/base/exceptions.h>
-#include <impm/output/pictures.h>
+#include <impm/base/files.h>
 #include <impm/run/checkpoint.h>
 
 #include <nlohmann/json.hpp>

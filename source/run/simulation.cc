@@ -2,6 +2,7 @@
 
 #include <impm/balance/terms/point_traction.h>
 #include <impm/base/exceptions.h>
+#include <impm/base/files.h>
 #include <impm/footprints/scatter.h>
 #include <impm/output/summary.h>
 #include <impm/run/checkpoint.h>

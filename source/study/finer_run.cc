@@ -1,5 +1,6 @@
 #include <impm/app/version.h>
 #include <impm/base/exceptions.h>
+#include <impm/base/files.h>
 #include <impm/run/simulation.h>
 #include <impm/study/finer_run.h>
 #include <impm/study/study.h>
@@ -8,8 +9,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
 namespace impm
 {
@@ -17,15 +16,6 @@ namespace impm
 
   namespace
   {
-    std::string
-    content_of(const std::string &file_name)
-    {
-      std::ifstream      file(file_name);
-      std::ostringstream content;
-      content << file.rdbuf();
-      return content.str();
-    }
-
     /** Null when there is none that can be read. */
     nlohmann::json
     summary_in(const std::string &directory)

@@ -1,4 +1,5 @@
 #include <impm/base/exceptions.h>
+#include <impm/base/files.h>
 #include <impm/study/study_process.h>
 
 #include <boost/process/args.hpp>
@@ -22,15 +23,6 @@ namespace impm
 {
   namespace
   {
-    std::string
-    read_whole(const std::string &file_name)
-    {
-      std::ifstream      file(file_name);
-      std::ostringstream content;
-      content << file.rdbuf();
-      return content.str();
-    }
-
     std::vector<std::string>
     command(const std::string &directory,
             const CommandLine &line,
@@ -117,7 +109,7 @@ namespace impm
       }
     result.exit_code = WEXITSTATUS(state);
     if (result.exit_code != 0 || !result.done())
-      result.status = reason(read_whole(log));
+      result.status = reason(content_of(log));
     return result;
   }
 
@@ -128,7 +120,7 @@ namespace impm
   {
     const auto result = read_result(directory);
     if (!result || !result->done() || result->ranks != ranks ||
-        read_whole(directory + "/parameters.prm") != parameters)
+        content_of(directory + "/parameters.prm") != parameters)
       return {};
     return result;
   }

@@ -1,6 +1,6 @@
 #include <impm/base/exceptions.h>
+#include <impm/base/files.h>
 #include <impm/base/names.h>
-#include <impm/output/pictures.h>
 #include <impm/scene/scene.h>
 #include <impm/study/study_process.h>
 #include <impm/study/study_runner.h>

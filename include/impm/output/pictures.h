@@ -41,13 +41,6 @@ namespace impm
 
     std::vector<std::pair<double, std::string>> point_files, grid_files;
   };
-
-  /**
-   * Writes a file under another name and moves it there, so that a crash
-   * leaves the one before. Throws SystemError. Not collective.
-   */
-  void
-  replace_file(const std::string &name, const std::string &content);
 } // namespace impm
 
 #endif

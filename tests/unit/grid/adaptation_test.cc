@@ -191,6 +191,42 @@ TEST(AdaptationMpi, UniformStrainStaysUniform)
 }
 
 
+// Points in the middle of a cell lie on the new faces when it is split.
+TEST(AdaptationMpi, PointsOnNewFacesStay)
+{
+  for (const std::string kind : {"plane strain", "axisymmetric"})
+    for (const std::string n : {"1", "3", "2"})
+      {
+        SCOPED_TRACE(kind + n);
+        Model<2>      model(block_scene(kind),
+                       Overrides{"Bodies/block/Points per cell=" + n,
+                                 "Geometry/Shapes=box, wall",
+                                 "Geometry/box/Upper corner=0.75, 1",
+                                 "Geometry/wall/Lower corner=0.75, 0",
+                                 "Geometry/wall/Upper corner=1, 1",
+                                 "Bodies/Names=block, wall",
+                                 "Bodies/wall/Kind=rigid",
+                                 "Bodies/wall/Shape=wall",
+                                 "Bodies/wall/Points per cell=" + n,
+                                 "Bodies/wall/Displacement=-0.02*t; 0"});
+        SplitWhere<2> policy(sweep<2>);
+        const auto    rigid = model.rigid.points(0).n_global();
+        model.dt            = 0.25;
+        impm::Vector u;
+        for (unsigned int step = 0; step < 4; ++step)
+          {
+            adapt(model, policy);
+            EXPECT_EQ(model.rigid.points(0).n_global(), rigid);
+            const auto result = model.solve(u);
+            ASSERT_TRUE(result.converged) << result.failure;
+            model.commit(u);
+            model.rigid.move(model.time - model.dt, model.time);
+          }
+        EXPECT_GT(total(model.points).strain_energy, 1e-6);
+      }
+}
+
+
 // A whole run whose policy adapts: nothing else had to know.
 TEST(AdaptationMpi, RunGoesOnOnOtherGrids)
 {

@@ -200,6 +200,9 @@ TEST(AdaptationMpi, PointsOnNewFacesStay)
         SCOPED_TRACE(kind + n);
         Model<2>      model(block_scene(kind),
                        Overrides{"Bodies/block/Points per cell=" + n,
+                                 "Boundary conditions/left/Type=fixed",
+                                 "Time/Integrator=theta",
+                                 "Boundary conditions/bottom/Type=fixed",
                                  "Geometry/Shapes=box, wall",
                                  "Geometry/box/Upper corner=0.75, 1",
                                  "Geometry/wall/Lower corner=0.75, 0",

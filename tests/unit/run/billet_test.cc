@@ -77,8 +77,11 @@ TEST(BilletMpi, TimeIntegratorsAgree)
   const double points = end({"Time/Time step=2.5e-3"});
   const double grid =
     end({"Time/Time step=2.5e-3", "Time/Acceleration from=grid"});
-  const double forward =
-    end({"Time/Integrator=explicit", "Time/Time step=1.4e-4"});
+  // Explicit steps of the velocity formulation amplify round-off here, so that
+  // every number of ranks would give another result.
+  const double forward  = end({"Time/Integrator=explicit",
+                               "Time/Formulation=momentum",
+                               "Time/Time step=1.4e-4"});
   const double elements = end(finite_elements);
   EXPECT_NEAR(points, elements, 0.05 * elements);
   EXPECT_NEAR(grid, elements, 0.05 * elements);

@@ -18,6 +18,13 @@ namespace impm
 {
   using namespace dealii;
 
+  namespace
+  {
+    const char *const singular =
+      "the linear system is singular (a body that nothing holds, or with too few "
+      "points for its grid?)";
+  } // namespace
+
   struct SparseMatrix::Implementation
   {
     Implementation(const IndexSet                  &owned,
@@ -191,7 +198,7 @@ namespace impm
       }
     if (Utilities::MPI::max(failed ? 1 : 0,
                             trilinos_matrix.get_mpi_communicator()) > 0)
-      throw LinearizationError("the linear system is singular");
+      throw LinearizationError(singular);
   }
 
   void
@@ -216,7 +223,7 @@ namespace impm
       }
     catch (const ExceptionBase &)
       {
-        throw LinearizationError("the linear system is singular");
+        throw LinearizationError(singular);
       }
   }
 
@@ -231,7 +238,7 @@ namespace impm
       }
     catch (const ExceptionBase &)
       {
-        throw LinearizationError("the linear system is singular");
+        throw LinearizationError(singular);
       }
   }
 } // namespace impm

@@ -70,7 +70,7 @@ namespace impm
         batch.start[i] =
           points.layout.load_tensor(fields + points.offset_deformation);
         batch.history[i]       = fields + points.offset_history;
-        batch.trial_history[i] = &histories[p * points.history_size()];
+        batch.trial_history[i] = histories.data() + p * points.history_size();
         batch.increment[i] =
           kinematics.deformation(&gradients[p * kinematics.size]);
       }

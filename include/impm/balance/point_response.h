@@ -73,7 +73,7 @@ namespace impm
     const double *
     trial_history(const unsigned int point) const
     {
-      return &histories[point * points.history_size()];
+      return histories.data() + point * points.history_size();
     }
 
     /** tau at the end of the step (Pa), as points that carry stress store it.

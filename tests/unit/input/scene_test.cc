@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "expect_blame.h"
 #include "scene_fixture.h"
 
 using namespace dealii;
@@ -25,25 +26,7 @@ namespace
                const std::string              &entry,
                const std::vector<std::string> &words)
   {
-    std::string all;
-    for (const auto &override : overrides)
-      all += override + ", ";
-    SCOPED_TRACE(all);
-    try
-      {
-        const auto          scene = scene_from<2>(plane, overrides);
-        const Simulation<2> simulation(scene,
-                                       CommandLine::Verbosity::quiet,
-                                       MPI_COMM_WORLD);
-        FAIL() << "is taken";
-      }
-    catch (const InputError &error)
-      {
-        EXPECT_EQ(error.entry, entry);
-        for (const auto &word : words)
-          EXPECT_NE(std::string(error.what()).find(word), std::string::npos)
-            << "found '" << error.what() << "', expected '" << word << "'";
-      }
+    impm::expect_blame(plane, overrides, entry, words);
   }
 } // namespace
 

@@ -7,6 +7,7 @@
 
 #include <filesystem>
 
+#include "expect_blame.h"
 #include "scene_fixture.h"
 
 using namespace dealii;
@@ -101,23 +102,10 @@ namespace
                const std::string              &entry,
                const std::vector<std::string> &words)
   {
-    SCOPED_TRACE(overrides.back());
-    try
-      {
-        const auto scene =
-          scene_from<2>(block_scene("plane strain"), moving + overrides);
-        const Simulation<2> simulation(scene,
-                                       CommandLine::Verbosity::quiet,
-                                       MPI_COMM_SELF);
-        FAIL() << "is taken";
-      }
-    catch (const InputError &error)
-      {
-        EXPECT_EQ(error.entry, entry);
-        for (const auto &word : words)
-          EXPECT_NE(std::string(error.what()).find(word), std::string::npos)
-            << "found '" << error.what() << "', expected '" << word << "'";
-      }
+    impm::expect_blame(block_scene("plane strain"),
+                       moving + overrides,
+                       entry,
+                       words);
   }
 } // namespace
 

@@ -199,20 +199,32 @@ namespace impm
     if (n_stress > 0)
       {
         const Tensor<2, 3> unit = unit_symmetric_tensor<3>();
+        start_stresses.resize(stresses.size());
         for (unsigned int p = 0; p < points.size(); ++p)
           kinematics.carry_back_stress(points.layout.load_symmetric(
                                          points.fields(p) +
                                          points.offset_stress),
                                        unit,
                                        points.initial_volume(p),
-                                       &stresses[p * kinematics.size]);
+                                       &start_stresses[p * kinematics.size]);
         return true;
       }
     double       potential = 0;
     const double length    = std::exchange(dt, 0.);
     const bool   fine      = evaluate(false, potential);
     dt                     = length;
+    start_stresses         = stresses;
     return fine;
+  }
+
+  template <int dim>
+  double
+  PointResponse<dim>::work() const
+  {
+    double sum = 0;
+    for (unsigned int i = 0; i < gradients.size(); ++i)
+      sum += 0.5 * (start_stresses[i] + stresses[i]) * gradients[i];
+    return sum;
   }
 
   template <int dim>

@@ -146,7 +146,7 @@ namespace impm
           *discretization,
           scene.geometry,
           scene.stabilization.ghost_penalty));
-        stabilization = terms.back().get();
+        stabilization.push_back(terms.back().get());
       }
     if (has_loads(scene.loads, scene.faces))
       {
@@ -171,20 +171,20 @@ namespace impm
   StepProblem<dim>::find_start_forces(Parts &parts)
   {
     start_acceleration = motion.acceleration;
+    // One rank alone may have the point: all must learn of it.
+    const int fine = response.evaluate_start() ? 1 : 0;
+    if (Utilities::MPI::min(fine, discretization->communicator) == 0)
+      throw ComputationError("at t = " + std::to_string(time) +
+                             " s: a point has no stress at the start of a "
+                             "step");
     // Points that carry their acceleration have none yet when they start.
     if (!integrator.needs_start_forces() &&
         !(integrator.keeps_acceleration() && time == 0))
       return;
     auto &forces = parts.start_forces;
     discretization->initialize(forces);
-    bool fine = true;
     for (const auto &term : parts.strain_terms)
-      fine = term->add_start_force(forces) && fine;
-    // One rank alone may have the point: all must learn of it.
-    if (Utilities::MPI::min(fine ? 1 : 0, discretization->communicator) == 0)
-      throw ComputationError("at t = " + std::to_string(time) +
-                             " s: a point has no stress at the start of a "
-                             "step");
+      term->add_start_force(forces);
     forces.compress(VectorOperation::add);
     discretization->condense_hanging(forces);
     for (unsigned int i = 0; i < forces.locally_owned_size(); ++i)
@@ -213,7 +213,10 @@ namespace impm
           scene.stabilization.isolated_stiffness);
         n_held_cells = term->n_cells;
         if (n_held_cells > 0)
-          parts.node_terms.push_back(std::move(term));
+          {
+            stabilization.push_back(term.get());
+            parts.node_terms.push_back(std::move(term));
+          }
         return;
       }
     Vector known;

@@ -105,7 +105,8 @@ namespace impm
     if (geometry != GeometryKind::axisymmetric)
       for (unsigned int d = dim == 2 ? 2 : 0; d < 3; ++d)
         names.push_back(std::string("angular_momentum_") + "xyz"[d]);
-    names.push_back("stabilization_work");
+    names.insert(names.end(),
+                 {"stabilization_work", "internal_work", "transfer_loss"});
     return names;
   }
 
@@ -124,6 +125,7 @@ namespace impm
     , rigid(rigid)
     , grid(grid)
     , reactions(output.reactions.size())
+    , start_kinetic_energy(total(points).kinetic_energy)
   {
     for (unsigned int f = 0; f < 2 * dim; ++f)
       face_start[f] = grid.face_position(f);
@@ -346,6 +348,9 @@ namespace impm
       for (unsigned int d = dim == 2 ? 2 : 0; d < 3; ++d)
         add(totals.angular_momentum[d]);
     add(report.stabilization_work);
+    add(report.internal_work);
+    add(report.external_work - report.stabilization_work -
+        report.internal_work - totals.kinetic_energy + start_kinetic_energy);
 
     file << std::setprecision(12);
     for (unsigned int i = 0; i < row.size(); ++i)

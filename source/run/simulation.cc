@@ -182,7 +182,8 @@ namespace impm
     report.dofs         = problem->n_active_dofs;
     const Vector forces = problem->end_forces(result.increment);
     work.add(*problem, result.increment, forces);
-    report.external_work      = work.done;
+    report.external_work      = work.external;
+    report.internal_work      = work.internal;
     report.stabilization_work = work.stabilization;
     history.take_reactions(*problem, forces);
     watch_faces();

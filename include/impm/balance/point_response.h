@@ -38,8 +38,8 @@ namespace impm
     evaluate(bool with_tangent, double &potential);
 
     /**
-     * Gives `stresses` those of the state at the start, whatever the length
-     * of the step; the gradients are zero. Returns false as evaluate() does.
+     * Finds `start_stresses`, while the gradients are zero, whatever the
+     * length of the step. Returns false as evaluate() does.
      */
     bool
     evaluate_start();
@@ -93,7 +93,11 @@ namespace impm
     const Kinematics<dim> kinematics;
     VolumeAverage<dim>    average;
 
-    std::vector<double> gradients, stresses;
+    /** Of the stresses over the step, by the trapezoidal rule (J). */
+    double
+    work() const;
+
+    std::vector<double> gradients, stresses, start_stresses;
 
   private:
     /** Consecutive points of one law, on their way through evaluate(). */

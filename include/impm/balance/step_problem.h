@@ -89,9 +89,10 @@ namespace impm
     const unsigned int n_limited_boxes; ///< of all ranks
     /** Neither constrained nor unused, of all ranks. */
     const unsigned int n_active_dofs;
-    unsigned int       n_held_cells  = 0;       ///< isolated ones
-    const Loads       *loads         = nullptr; ///< one of the terms
-    const Term        *stabilization = nullptr; ///< another one
+    unsigned int       n_held_cells = 0;       ///< isolated ones
+    const Loads       *loads        = nullptr; ///< one of the terms
+    /** Those of the terms that are no physics: ghost penalty, holding. */
+    std::vector<const Term *> stabilization;
     /** What the integrator takes for the acceleration at the start: gathered,
      * or from the forces then (m/s^2). */
     Vector                                              start_acceleration;
@@ -113,7 +114,8 @@ namespace impm
                      const MaterialPoints<dim> &points,
                      Parts                     &parts);
 
-    /** f(0) and the acceleration that it gives, if they are asked for. */
+    /** Stresses at the start; f(0) and the acceleration that it gives, if they
+     * are asked for. */
     void
     find_start_forces(Parts &parts);
 

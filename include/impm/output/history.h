@@ -24,7 +24,8 @@ namespace impm
                  limited_boxes = 0, active_cells = 0, dofs = 0;
     double residual           = 0;
     double external_work      = 0; ///< since the start (J)
-    double stabilization_work = 0; ///< of it, taken by the ghost penalty (J)
+    double internal_work      = 0; ///< of the stresses, as seen by the grid (J)
+    double stabilization_work = 0; ///< of ghost penalty and holding (J)
     double wall_seconds       = 0; ///< since the start
 
     /** Goes on to a later step; counts add up. */
@@ -123,6 +124,7 @@ namespace impm
     const BackgroundGrid<dim>                  &grid;
     std::vector<Follower>                       followers; ///< by probe
     std::vector<double>                         reactions;
+    double                                      start_kinetic_energy;
     std::array<double, 2 * dim>                 face_start;
     std::vector<std::pair<std::string, double>> figures;
     std::ofstream                               file;

@@ -10,8 +10,8 @@
 #include <impm/output/history.h>
 #include <impm/output/pictures.h>
 #include <impm/output/warnings.h>
-#include <impm/run/external_work.h>
 #include <impm/run/solve_step.h>
+#include <impm/run/work_done.h>
 #include <impm/study/reference.h>
 #include <impm/time/step_control.h>
 
@@ -120,7 +120,7 @@ namespace impm
     WorkCounts                                   counts;
     std::unique_ptr<StepProblem<dim>>            problem; ///< of this step
     StepResult                                   result;
-    ExternalWork<dim>                            work;
+    WorkDone<dim>                                work;
 
     Pictures<dim>             pictures;
     History<dim>              history;

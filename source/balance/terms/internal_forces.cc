@@ -37,12 +37,10 @@ namespace impm
   }
 
   template <int dim>
-  bool
-  InternalForces<dim>::add_start_force(Vector &force)
+  void
+  InternalForces<dim>::add_start_force(Vector &force) const
   {
-    const bool fine = response.evaluate_start();
-    add_forces_of(response.stresses, force);
-    return fine;
+    add_forces_of(response.start_stresses, force);
   }
 
   template <int dim>

@@ -45,8 +45,8 @@ namespace impm
                          const ResidualNorm  &norm,
                          std::vector<double> &squares) const override;
 
-    bool
-    add_start_force(Vector &force) override;
+    void
+    add_start_force(Vector &force) const override;
 
     void
     apply(const Vector &direction, Vector &image) const override;

@@ -58,11 +58,10 @@ namespace impm
     double
     energy(const Vector &u) const override;
 
-    bool
-    add_start_force(Vector &force) override
+    void
+    add_start_force(Vector &force) const override
     {
       force += at_start;
-      return true;
     }
 
     const Vector at_start, at_end;

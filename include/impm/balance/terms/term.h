@@ -52,12 +52,10 @@ namespace impm
                          std::vector<double> & /*squares*/) const
     {}
 
-    /** force += f at the start of the step (N). Returns as evaluate(). */
-    virtual bool
-    add_start_force(Vector & /*force*/)
-    {
-      return true;
-    }
+    /** force += f at the start of the step (N). */
+    virtual void
+    add_start_force(Vector & /*force*/) const
+    {}
 
     /** image += df/du direction. */
     virtual void

@@ -1,4 +1,4 @@
-#include <impm/run/external_work.h>
+#include <impm/run/work_done.h>
 
 namespace impm
 {
@@ -6,9 +6,9 @@ namespace impm
 
   template <int dim>
   void
-  ExternalWork<dim>::add(const StepProblem<dim> &problem,
-                         const Vector           &u,
-                         const Vector           &forces)
+  WorkDone<dim>::add(const StepProblem<dim> &problem,
+                     const Vector           &u,
+                     const Vector           &forces)
   {
     const auto        &constraints = problem.constraints;
     const MPI_Comm     comm        = problem.discretization->communicator;
@@ -37,20 +37,20 @@ namespace impm
         sum[2] += 1;
       }
     Utilities::MPI::sum(sums, comm, sums);
-    done += Utilities::MPI::sum(work, comm);
+    external += Utilities::MPI::sum(work, comm);
     for (unsigned int b = 0; b < n; ++b)
       for (unsigned int d = 0; d < dim; ++d)
         {
           const double *sum = &sums[3 * (dim * b + d)];
           if (sum[2] > 0)
-            done += 0.5 * (last_forces[b][d] - sum[0]) * sum[1] / sum[2];
+            external += 0.5 * (last_forces[b][d] - sum[0]) * sum[1] / sum[2];
           last_forces[b][d] = sum[0];
         }
-    if (problem.stabilization != nullptr)
-      stabilization +=
-        Utilities::MPI::sum(problem.stabilization->energy(u), comm);
+    internal += Utilities::MPI::sum(problem.response.work(), comm);
+    for (const Term *term : problem.stabilization)
+      stabilization += Utilities::MPI::sum(term->energy(u), comm);
   }
 
-  template class ExternalWork<2>;
-  template class ExternalWork<3>;
+  template class WorkDone<2>;
+  template class WorkDone<3>;
 } // namespace impm

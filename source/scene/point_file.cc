@@ -1,8 +1,8 @@
 #include <deal.II/base/exceptions.h>
 #include <deal.II/base/utilities.h>
 
-#include <impm/base/csv.h>
 #include <impm/base/exceptions.h>
+#include <impm/base/names.h>
 #include <impm/scene/point_file.h>
 
 #include <boost/algorithm/string/case_conv.hpp>
@@ -77,8 +77,9 @@ namespace impm
     {
       const std::string byte_order_mark = "\xEF\xBB\xBF"; // from spreadsheets
       const bool        has_mark = boost::starts_with(line, byte_order_mark);
-      const auto        names    = split_csv_line(boost::to_lower_copy(
-        line.substr(has_mark ? byte_order_mark.size() : 0)));
+      const auto        names    = split(boost::to_lower_copy(line.substr(
+                                 has_mark ? byte_order_mark.size() : 0)),
+                               ',');
 
       std::map<std::string, std::size_t> columns;
       for (std::size_t i = 0; i < names.size(); ++i)
@@ -101,12 +102,12 @@ namespace impm
       std::string line;
       std::getline(in, line);
       const auto        columns   = read_header(line, dim);
-      const std::size_t n_columns = split_csv_line(line).size();
+      const std::size_t n_columns = split(line, ',').size();
 
       Content content;
       for (unsigned int number = 2; std::getline(in, line); ++number)
         {
-          const auto fields = split_csv_line(line);
+          const auto fields = split(line, ',');
           if (fields.size() == 1 && fields.front().empty())
             continue; // a blank line
           const std::string place = "line " + std::to_string(number);

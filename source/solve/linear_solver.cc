@@ -153,7 +153,7 @@ namespace impm
     else
       {
         SolverGMRES<Vector>::AdditionalData data;
-        compat::set_basis_size<Vector>(data, spec.gmres_directions);
+        compat::set_basis_size(data, spec.gmres_directions);
         data.right_preconditioning = true;
         SolverGMRES<Vector> solver(control, data);
         run(solver);

@@ -1,7 +1,7 @@
 #ifndef impm_study_reference_h
 #define impm_study_reference_h
 
-#include <impm/base/csv.h>
+#include <impm/base/files.h>
 #include <impm/input/sections/reference.h>
 #include <impm/output/history.h>
 #include <impm/output/summary.h>

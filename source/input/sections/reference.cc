@@ -1,7 +1,7 @@
 #include <deal.II/base/utilities.h>
 
-#include <impm/base/csv.h>
 #include <impm/base/exceptions.h>
+#include <impm/base/files.h>
 #include <impm/input/choice.h>
 #include <impm/input/expressions.h>
 #include <impm/input/sections/output.h>

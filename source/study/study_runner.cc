@@ -56,10 +56,7 @@ namespace impm
         {
           throw InputError("",
                            "run '" + run.name + "' of the study: " +
-                             (error.entry.empty() ?
-                                error.what() :
-                                file->locate(error.entry) + ": entry '" +
-                                  error.entry + "': " + error.what()));
+                             (file ? file->describe(error) : error.what()));
         }
     }
 
@@ -148,7 +145,7 @@ namespace impm
     std::vector<std::string> parameters;
     for (const auto &run : runs)
       parameters.push_back(resolve(line, run, spec.columns));
-    if (line.action == CommandLine::Action::check)
+    if (line.check)
       {
         list_runs(runs);
         return;

@@ -16,7 +16,7 @@ namespace impm
         {
           auto points = std::make_unique<SortedParticles<dim>>(grid, 0);
           if (grid.is_lagrangian)
-            boxes.push_back(*spec.shape->bounding_box());
+            boxes.push_back(*spec.shape->bounding_box);
           else
             points->insert(seed_body(specs, spec, geometry, grid));
           points->sort();

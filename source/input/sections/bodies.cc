@@ -133,7 +133,7 @@ namespace impm
           body.shape = pick(prm, "Shape", shapes);
           if (!lagrangian || !body.rigid)
             body.points_per_cell = read_points_per_cell<dim>(prm);
-          else if (!body.shape->is_box())
+          else if (!body.shape->is_box)
             throw InputError("Shape",
                              "found '" + prm.get("Shape") +
                                "', allowed for a rigid body on a "
@@ -226,7 +226,7 @@ namespace impm
   {
     for (const auto &body : bodies)
       {
-        const auto box = body.shape ? body.shape->bounding_box() : std::nullopt;
+        const auto box = body.shape ? body.shape->bounding_box : std::nullopt;
         if (!box || grid.is_lagrangian())
           continue;
         for (unsigned int d = 0; d < dim; ++d)

@@ -77,7 +77,8 @@ namespace impm
         in_section(prm, name, [&]() {
           for (const auto &entry : shape_list<dim>())
             if (entry.name == prm.get("Kind"))
-              shapes[name] = entry.create(prm, constants, shapes);
+              shapes[name] = std::make_shared<const Shape<dim>>(
+                entry.create(prm, constants, shapes));
         });
     });
     return shapes;

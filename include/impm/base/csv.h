@@ -6,15 +6,12 @@
 
 namespace impm
 {
-  /** The fields between the commas of a line, without blanks around them. */
-  std::vector<std::string>
-  split_csv_line(const std::string &line);
-
   /** Columns of numbers under a header line. */
   struct CsvTable
   {
     std::vector<std::string>         names;
     std::vector<std::vector<double>> columns;
+    std::vector<unsigned int>        lines; ///< where each row stands
 
     bool
     has(const std::string &name) const;
@@ -25,11 +22,14 @@ namespace impm
   };
 
   /**
-   * Reads a file on this rank. Throws InputError, with an empty entry and a
-   * message that names file, line and reason.
+   * Reads a file on this rank: all its columns, or those `wanted`, which it
+   * may call in upper case; the others may hold anything and stay empty. Throws
+   * InputError, with an empty entry and a message that names file, line and
+   * reason.
    */
   CsvTable
-  read_csv_table(const std::string &file_name);
+  read_csv_table(const std::string              &file_name,
+                 const std::vector<std::string> &wanted = {});
 } // namespace impm
 
 #endif

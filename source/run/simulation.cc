@@ -8,7 +8,7 @@
 #include <impm/run/checkpoint.h>
 #include <impm/run/motion_limits.h>
 #include <impm/run/simulation.h>
-#include <impm/scene/layout_choice.h>
+#include <impm/scene/scene.h>
 
 #include <algorithm>
 #include <cmath>

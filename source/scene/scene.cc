@@ -1,7 +1,11 @@
+#include <impm/balance/terms/point_traction.h>
 #include <impm/scene/scene.h>
+
+#include <boost/algorithm/cxx11/any_of.hpp>
 
 namespace impm
 {
+  using boost::algorithm::any_of;
   using dealii::ParameterHandler;
 
   void
@@ -70,8 +74,65 @@ namespace impm
     return scene;
   }
 
+  template <int dim>
+  PointLayout
+  choose_layout(const Scene<dim> &scene)
+  {
+    using Kind = PointLayout::Kind;
+    PointLayout layout(scene.geometry);
+    layout.add("body", Kind::scalar);
+    layout.add("initial_volume", Kind::scalar);
+    layout.add("deformation_gradient", Kind::tensor);
+
+    const auto &time = scene.time;
+    if (time.has_inertia())
+      layout.add("velocity", Kind::vector);
+    if (time.keeps_acceleration)
+      layout.add("acceleration", Kind::vector);
+    // Explicit forces need nothing else of the laws; averages of volume change
+    // with the cells.
+    if (time.is_explicit() && !any_of(scene.bodies, [](const auto &body) {
+          return body.material && body.material->average_volume;
+        }))
+      layout.add("stress", Kind::symmetric_tensor);
+    if (time.has_inertia() && time.transfer == TransferKind::apic)
+      for (unsigned int d = 0; d < dim; ++d)
+        layout.add(std::string("velocity_gradient_") + "xyz"[d], Kind::vector);
+    const bool needs_initial_position =
+      scene.loads.body_force_is_initial ||
+      any_of(scene.loads.tractions,
+             [](const auto &traction) { return traction.is_initial; }) ||
+      any_of(scene.output.point_fields,
+             [](const auto &field) { return field == "displacement"; }) ||
+      any_of(scene.output.probes,
+             [](const auto &probe) {
+               return probe.field == "displacement" || probe.where;
+             }) ||
+      any_of(scene.references,
+             [](const auto &reference) { return !reference.field.empty(); });
+    if (needs_initial_position)
+      layout.add("initial_position", Kind::vector);
+    if (scene.grid.method == GridMethod::gimp ||
+        any_of(scene.output.probes, [](const auto &probe) {
+          return probe.kind == ProbeSpec::Kind::extent;
+        }))
+      layout.add("initial_domain", Kind::vector);
+
+    for (const auto &traction : scene.loads.tractions)
+      layout.add(traction_field(traction), Kind::scalar);
+
+    // The history comes last, in one block.
+    for (const auto &field : scene.history->fields())
+      layout.add(field.name, field.kind);
+    return layout;
+  }
+
   template Scene<2>
   read_scene<2>(ParameterHandler &, const std::string &);
   template Scene<3>
   read_scene<3>(ParameterHandler &, const std::string &);
+  template PointLayout
+  choose_layout(const Scene<2> &);
+  template PointLayout
+  choose_layout(const Scene<3> &);
 } // namespace impm

@@ -7,7 +7,7 @@
 #include <impm/footprints/scatter.h>
 #include <impm/grid/grid_policy.h>
 #include <impm/run/solve_step.h>
-#include <impm/scene/layout_choice.h>
+#include <impm/scene/scene.h>
 
 #include <unistd.h>
 

@@ -79,7 +79,7 @@ namespace impm
   double
   Simulation<dim>::cfl_unit() const
   {
-    return grid.discretization()->smallest_cell_extent / largest_speed(points);
+    return grid.discretization()->smallest_cell_extent / points.largest_speed();
   }
 
   template <int dim>

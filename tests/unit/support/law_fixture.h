@@ -129,7 +129,7 @@ namespace impm
     double
     plastic_strain() const
     {
-      return layout.has("equivalent_plastic_strain") ?
+      return layout.find("equivalent_plastic_strain") ?
                history[layout.offset("equivalent_plastic_strain")] :
                0.;
     }

@@ -25,15 +25,11 @@ namespace impm
       const auto law = chosen(path + "Law", laws.front().name);
       for (const auto &entry : laws)
         if (entry.name == law)
-          {
-            entry.declare(prm);
-            if (entry.declare_chosen)
-              entry.declare_chosen(prm,
-                                   [&](const std::string &choice,
-                                       const std::string &fallback) {
-                                     return chosen(path + choice, fallback);
-                                   });
-          }
+          entry.declare(prm,
+                        [&](const std::string &choice,
+                            const std::string &fallback) {
+                          return chosen(path + choice, fallback);
+                        });
       prm.declare_entry("F-bar",
                         "false",
                         Patterns::Bool(),

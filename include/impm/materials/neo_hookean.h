@@ -43,14 +43,12 @@ namespace impm
                  Material::Response   &response) const override
     {
       dealii::SymmetricTensor<2, 3> b_minus_1;
-      double                        log_J;
-      if (!measure(step.total, b_minus_1, log_J))
-        return false;
-      const auto   unit     = dealii::unit_symmetric_tensor<3>();
-      const double pressure = volumetric * log_J;
-      const double shear    = decoupled ?
-                                constants.shear * std::exp(-2. / 3. * log_J) :
-                                constants.shear;
+      const double                  log_J = measure(step.total, b_minus_1);
+      const auto                    unit  = dealii::unit_symmetric_tensor<3>();
+      const double                  pressure = volumetric * log_J;
+      const double                  shear    = decoupled ?
+                                                 constants.shear * std::exp(-2. / 3. * log_J) :
+                                                 constants.shear;
       const dealii::SymmetricTensor<2, 3> shape =
         shear * (decoupled ? dealii::deviator(b_minus_1) : b_minus_1);
       response.kirchhoff_stress = shape + pressure * unit;
@@ -75,24 +73,16 @@ namespace impm
     energy(const dealii::Tensor<2, 3> &F, const double *) const override
     {
       dealii::SymmetricTensor<2, 3> b_minus_1;
-      double                        log_J;
-      return {measure(F, b_minus_1, log_J) ?
-                potential(b_minus_1, log_J) :
-                std::numeric_limits<double>::quiet_NaN(),
-              0.};
+      const double                  log_J = measure(F, b_minus_1);
+      return {potential(b_minus_1, log_J), 0.};
     }
 
   private:
-    /** F F^T - 1 and ln J. Returns false where J <= 0. */
-    static bool
+    /** Sets F F^T - 1 and returns ln J; NaN where J <= 0, as all else then. */
+    static double
     measure(const dealii::Tensor<2, 3>    &F,
-            dealii::SymmetricTensor<2, 3> &b_minus_1,
-            double                        &log_J)
+            dealii::SymmetricTensor<2, 3> &b_minus_1)
     {
-      const double J = dealii::determinant(F);
-      if (!(J > 0.))
-        return false;
-
       // In terms of H = F - 1, so that small strains keep all of their digits.
       dealii::Tensor<2, 3> H = F;
       for (unsigned int d = 0; d < 3; ++d)
@@ -106,8 +96,10 @@ namespace impm
                             H[1][1] * H[2][2] - H[1][2] * H[2][1] +
                             H[2][2] * H[0][0] - H[2][0] * H[0][2];
       const double J_minus_1 = trace + second + dealii::determinant(H);
-      log_J = std::abs(J_minus_1) < 0.5 ? std::log1p(J_minus_1) : std::log(J);
-      return true;
+      const double J         = dealii::determinant(F);
+      if (!(J > 0.))
+        return std::numeric_limits<double>::quiet_NaN();
+      return std::abs(J_minus_1) < 0.5 ? std::log1p(J_minus_1) : std::log(J);
     }
 
     /** psi (J/m^3). */

@@ -22,8 +22,7 @@ namespace impm
                      const Discretization<dim> &discretization,
                      const bool                 has_inertia)
     {
-      Footprints<dim> footprints;
-      builder.build(points, grid, discretization, footprints);
+      auto footprints = builder.build(points, grid, discretization);
       if (has_inertia && !grid.is_lagrangian)
         footprints.release_massless_nodes(discretization);
       return footprints;
@@ -69,7 +68,7 @@ namespace impm
                                                       *discretization) :
                                         NodalMotion())
     , n_limited_boxes(
-        Utilities::MPI::sum(builder.n_limited_boxes, grid.communicator))
+        Utilities::MPI::sum(footprints.n_limited_boxes, grid.communicator))
     , n_active_dofs(count_active_dofs())
     , smoothing(
         scene.time.momentum_formulation ?

@@ -231,9 +231,9 @@ namespace impm
           if (faces[f].name == spec.of)
             return component == f / 2 ? grid.face_position(f) - face_start[f] :
                                         0.;
-        for (unsigned int b = 0; b < rigid.size(); ++b)
-          if (rigid.spec(b).name == spec.of)
-            return rigid.displacement(b, 0, time)[component];
+        for (const auto &body : rigid.bodies)
+          if (body.spec->name == spec.of)
+            return body.displacement(0, time)[component];
       }
 
     if (follower.field)

@@ -167,8 +167,8 @@ namespace impm
       }
     // Rigid points carry nothing but their place; "body" counts on from the
     // deformable ones as -1, -2, ...
-    for (unsigned int b = 0; b < rigid.size(); ++b)
-      for (const auto &particle : rigid.points(b).particles)
+    for (unsigned int b = 0; b < rigid.bodies.size(); ++b)
+      for (const auto &particle : rigid.bodies[b].points->particles)
         {
           for (unsigned int i = 0; i < writer.names.size(); ++i)
             patch.data(i, 0) =

@@ -25,7 +25,7 @@ namespace impm
                   (problem.loads->at_start.local_element(i) +
                    problem.loads->at_end.local_element(i)) *
                   u.local_element(i);
-        const unsigned int carrier = constraints.carrier(i);
+        const unsigned int carrier = constraints.carrier[i];
         if (carrier == StepConstraints<dim>::no_carrier)
           continue;
         const double inertia = problem.held_inertia(u, i);

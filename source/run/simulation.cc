@@ -3,7 +3,7 @@
 #include <impm/balance/terms/point_traction.h>
 #include <impm/base/exceptions.h>
 #include <impm/base/files.h>
-#include <impm/footprints/scatter.h>
+#include <impm/footprints/transfer.h>
 #include <impm/output/summary.h>
 #include <impm/run/checkpoint.h>
 #include <impm/run/motion_limits.h>
@@ -36,10 +36,10 @@ namespace impm
              grid)
     , rigid(scene.bodies, scene.geometry, grid)
     , policy(other_policy ? std::move(other_policy) :
-                            make_grid_policy(scene.grid, scene.faces))
+                            std::make_unique<GridPolicy<dim>>(scene.faces))
     , control(scene.time)
     , integrator(make_time_integrator(scene.time))
-    , builder(make_footprint_builder(scene.grid))
+    , builder(scene.grid)
     , pictures(scene.output, points, rigid, grid)
     , history(scene.output, scene.faces, scene.bodies, points, rigid, grid)
     , reference(scene.references,
@@ -109,7 +109,7 @@ namespace impm
       TimerOutput::Scope scope(timer, "set-up of the step");
       problem.reset();
       problem = std::make_unique<StepProblem<dim>>(
-        scene, grid, points, rigid, *integrator, *builder, counts, time, dt);
+        scene, grid, points, rigid, *integrator, builder, counts, time, dt);
     }
     auto solution = solve_step(*problem, scene.solver, timer, result.increment);
     report.newton_iterations += solution.iterations;

@@ -81,7 +81,7 @@ namespace impm
     {
       const auto    quadrature = gauss_points<dim>(body.points_per_cell);
       FEValues<dim> values(*grid.mapping,
-                           grid.discretization()->numbering->fe,
+                           grid.discretization()->dof_handler().get_fe(),
                            quadrature,
                            update_quadrature_points | update_JxW_values);
       std::string   cut;

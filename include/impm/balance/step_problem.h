@@ -5,9 +5,8 @@
 #include <impm/balance/point_response.h>
 #include <impm/balance/terms/loads.h>
 #include <impm/footprints/footprint_builder.h>
-#include <impm/footprints/gather.h>
+#include <impm/footprints/transfer.h>
 #include <impm/grid/populated_cells.h>
-#include <impm/grid/step_result.h>
 #include <impm/scene/scene.h>
 #include <impm/time/time_integrator.h>
 

@@ -115,12 +115,12 @@ namespace impm
     double                                 time = 0;
     StepControl                            control;
 
-    const std::unique_ptr<TimeIntegrator>        integrator;
-    const std::unique_ptr<FootprintBuilder<dim>> builder;
-    WorkCounts                                   counts;
-    std::unique_ptr<StepProblem<dim>>            problem; ///< of this step
-    StepResult                                   result;
-    ExternalWork<dim>                            work;
+    const std::unique_ptr<TimeIntegrator> integrator;
+    FootprintBuilder<dim>                 builder;
+    WorkCounts                            counts;
+    std::unique_ptr<StepProblem<dim>>     problem; ///< of this step
+    StepResult                            result;
+    ExternalWork<dim>                     work;
 
     Pictures<dim>             pictures;
     History<dim>              history;

@@ -3,8 +3,9 @@
 #include <deal.II/fe/fe_q.h>
 #include <deal.II/fe/fe_values.h>
 
+#include <deal.II/grid/grid_tools.h>
+
 #include <impm/balance/terms/ghost_penalty.h>
-#include <impm/grid/cell_neighbors.h>
 
 namespace impm
 {
@@ -38,13 +39,16 @@ namespace impm
                                   const GeometryKind         geometry,
                                   const double               gamma)
   {
-    const auto         &stiffness = populated_cells.stiffness;
-    std::vector<double> at_edge(stiffness.size());
-    for (const auto &cell : populated_cells.cells)
-      for_each_neighbor<dim>(cell.cell, [&](const auto &neighbor) {
-        if (stiffness[neighbor->active_cell_index()] == 0)
-          at_edge[cell.cell->active_cell_index()] = 1;
-      });
+    const auto                    &stiffness = populated_cells.stiffness;
+    std::vector<double>            at_edge(stiffness.size());
+    std::vector<CellIterator<dim>> adjacent;
+    for (const auto &[cell, nodes] : populated_cells.cells)
+      {
+        GridTools::get_active_neighbors<DoFHandler<dim>>(cell, adjacent);
+        for (const auto &neighbor : adjacent)
+          if (stiffness[neighbor->active_cell_index()] == 0)
+            at_edge[cell->active_cell_index()] = 1;
+      }
     exchange_cell_data(discretization, at_edge);
 
     const FE_Q<dim>       fe(1);

@@ -1,5 +1,6 @@
+#include <deal.II/grid/grid_tools.h>
+
 #include <impm/balance/terms/isolated_cells.h>
-#include <impm/grid/cell_neighbors.h>
 
 #include <map>
 
@@ -18,8 +19,8 @@ namespace impm
     label_pieces(const PopulatedCells<dim> &populated,
                  const Discretization<dim> &discretization)
     {
-      std::vector<double> label(
-        discretization.triangulation().n_active_cells());
+      std::vector<double> label(populated.stiffness.size());
+      std::vector<typename Discretization<dim>::CellIterator> neighbors;
       for (const auto &cell : populated.cells)
         label[cell.cell->active_cell_index()] =
           1. + cell.cell->global_active_cell_index();
@@ -33,14 +34,17 @@ namespace impm
               for (const auto &cell : populated.cells)
                 {
                   double &own = label[cell.cell->active_cell_index()];
-                  for_each_neighbor<dim>(cell.cell, [&](const auto &neighbor) {
-                    const double other = label[neighbor->active_cell_index()];
-                    if (other > 0 && other < own)
-                      {
-                        own   = other;
-                        again = true;
-                      }
-                  });
+                  GridTools::get_active_neighbors<DoFHandler<dim>>(cell.cell,
+                                                                   neighbors);
+                  for (const auto &neighbor : neighbors)
+                    {
+                      const double other = label[neighbor->active_cell_index()];
+                      if (other > 0 && other < own)
+                        {
+                          own   = other;
+                          again = true;
+                        }
+                    }
                 }
             }
           changed =
@@ -69,7 +73,7 @@ namespace impm
           bits |= 1u;
         for (const unsigned int node : cell.nodes)
           for (unsigned int d = 0; d < dim; ++d)
-            if (constraints.is_prescribed(dim * node + d))
+            if (constraints.carrier[dim * node + d] != constraints.no_carrier)
               bits |= 1u << d;
       }
     for (const auto &others :

@@ -200,7 +200,8 @@ namespace
       EXPECT_LT(deviation.symmetry, 1e-14);
     else
       EXPECT_GT(deviation.symmetry, 1e-6);
-    if (model.grid.discretization()->hanging_nodes().n_constraints() == 0 &&
+    if (model.grid.discretization()->numbering->hanging_nodes.n_constraints() ==
+          0 &&
         !momentum)
       EXPECT_LT(deviation.diagonal, 1e-13);
   }

@@ -43,10 +43,10 @@ namespace
           -model.constraints().sum_over("top", forces, {0., 1.}));
         const auto end = model.problem->end_motion(u);
         model.commit(u);
-        model.policy->advance(model.grid,
-                              end,
-                              model.time - model.dt,
-                              model.time);
+        model.policy.advance(model.grid,
+                             end,
+                             model.time - model.dt,
+                             model.time);
         model.points.sort();
       }
     const auto totals = total(model.points);

@@ -74,9 +74,9 @@ namespace impm
                              const MaterialPoints<dim> &points,
                              const Footprints<dim>     &footprints,
                              const Discretization<dim> &discretization)
-    : is_by_body(scale == ResidualScale::body)
-    , communicator(discretization.communicator)
+    : communicator(discretization.communicator)
   {
+    const bool   is_by_body   = scale == ResidualScale::body;
     unsigned int n_deformable = 0;
     for (const auto &body : bodies)
       {
@@ -108,8 +108,8 @@ namespace impm
   void
   ResidualNorm::find_neighbors(const std::vector<Vector> &forces)
   {
-    const unsigned int        n = forces.size();
-    std::vector<unsigned int> touch(n * n);
+    const unsigned int n = forces.size();
+    nearby.resize(n * n);
     shares.resize(n);
     for (unsigned int i = 0; i < unit_strain_forces.locally_owned_size(); ++i)
       for (unsigned int g = 0; g < n; ++g)
@@ -120,16 +120,14 @@ namespace impm
                                    unit_strain_forces.local_element(i)});
             for (unsigned int h = 0; h < n; ++h)
               if (forces[h].local_element(i) > 0)
-                touch[n * g + h] = 1;
+                nearby[n * g + h] = 1;
           }
-    Utilities::MPI::max(touch, communicator, touch);
+    Utilities::MPI::max(nearby, communicator, nearby);
     for (unsigned int k = 0; k < n; ++k)
       for (unsigned int g = 0; g < n; ++g)
         for (unsigned int h = 0; h < n; ++h)
-          if (touch[n * g + k] > 0 && touch[n * k + h] > 0)
-            touch[n * g + h] = 1;
-    for (unsigned int g = 0; g < n; ++g)
-      nearby.emplace_back(touch.begin() + n * g, touch.begin() + n * (g + 1));
+          if (nearby[n * g + k] > 0 && nearby[n * k + h] > 0)
+            nearby[n * g + h] = 1;
   }
 
   std::vector<double>
@@ -163,10 +161,10 @@ namespace impm
     for (unsigned int g = 0; g < n_groups(); ++g)
       norms[g] /= units[g];
     std::vector<double> result = norms;
-    for (unsigned int g = 0; g < nearby.size(); ++g)
-      for (unsigned int h = 0; h < nearby.size(); ++h)
-        if (nearby[g][h])
-          result[g] = std::max(result[g], norms[h]);
+    for (unsigned int i = 0; i < nearby.size(); ++i)
+      if (nearby[i] > 0)
+        result[i / n_groups()] =
+          std::max(result[i / n_groups()], norms[i % n_groups()]);
     return result;
   }
 

@@ -158,7 +158,7 @@ namespace impm
           });
       }
     sort();
-    check_tractions(tractions, *this);
+    count_points_under_tractions(tractions, *this);
   }
 
   template <int dim>

@@ -20,11 +20,10 @@ namespace impm
     double              work = 0;
     for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
       {
-        if (problem.loads != nullptr)
-          work -= 0.5 *
-                  (problem.loads->at_start.local_element(i) +
-                   problem.loads->at_end.local_element(i)) *
-                  u.local_element(i);
+        work -= 0.5 *
+                (problem.loads.at_start.local_element(i) +
+                 problem.loads.at_end.local_element(i)) *
+                u.local_element(i);
         const unsigned int carrier = constraints.carrier(i);
         if (carrier == StepConstraints<dim>::no_carrier)
           continue;
@@ -46,9 +45,7 @@ namespace impm
             done += 0.5 * (last_forces[b][d] - sum[0]) * sum[1] / sum[2];
           last_forces[b][d] = sum[0];
         }
-    if (problem.stabilization != nullptr)
-      stabilization +=
-        Utilities::MPI::sum(problem.stabilization->energy(u), comm);
+    stabilization += Utilities::MPI::sum(problem.ghost_penalty.energy(u), comm);
   }
 
   template class ExternalWork<2>;

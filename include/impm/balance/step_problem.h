@@ -2,8 +2,6 @@
 #define impm_balance_step_problem_h
 
 #include <impm/balance/momentum_balance.h>
-#include <impm/balance/point_response.h>
-#include <impm/balance/terms/loads.h>
 #include <impm/footprints/footprint_builder.h>
 #include <impm/footprints/gather.h>
 #include <impm/grid/populated_cells.h>
@@ -18,7 +16,7 @@ namespace impm
   /**
    * Everything that belongs to one step and dies with it: where the points
    * touch the grid, what holds its nodes, their motion at the start, the trial
-   * state of the points, and the balance of momentum with its terms. Making
+   * state of the points, the forces, and the balance of momentum. Making
    * one is the one way to prepare a step: from points and grid as they are,
    * whether they come from the step before, from another grid or from disk.
    */
@@ -89,41 +87,40 @@ namespace impm
     const unsigned int n_limited_boxes; ///< of all ranks
     /** Neither constrained nor unused, of all ranks. */
     const unsigned int n_active_dofs;
-    unsigned int       n_held_cells  = 0;       ///< isolated ones
-    const Loads       *loads         = nullptr; ///< one of the terms
-    const Term        *stabilization = nullptr; ///< another one
+
+    InternalForces<dim>     internal_forces;
+    const GhostPenalty<dim> ghost_penalty;
+    const Loads<dim>        loads;
+    const Vector            start_forces; ///< f(0) (N), if asked for, or empty
     /** What the integrator takes for the acceleration at the start: gathered,
      * or from the forces then (m/s^2). */
-    Vector                                              start_acceleration;
+    const Vector                                        start_acceleration;
+    unsigned int                                        n_held_cells = 0;
+    const NodalForces                                   nodal_forces;
     const std::unique_ptr<const VelocitySmoothing<dim>> smoothing; ///< or null
     MomentumBalance<dim>                                balance;
 
   private:
-    using Parts = typename MomentumBalance<dim>::Parts;
-
-    /** The terms that this scene needs, and no others. */
-    Parts
-    make_parts(const Scene<dim>          &scene,
-               const BackgroundGrid<dim> &grid,
-               const MaterialPoints<dim> &points);
-
-    void
-    add_strain_terms(const Scene<dim>          &scene,
-                     const BackgroundGrid<dim> &grid,
-                     const MaterialPoints<dim> &points,
-                     Parts                     &parts);
-
-    /** f(0) and the acceleration that it gives, if they are asked for. */
-    void
-    find_start_forces(Parts &parts);
-
-    void
-    add_node_terms(const Scene<dim>          &scene,
-                   const MaterialPoints<dim> &points,
-                   Parts                     &parts);
-
     unsigned int
-    count_active_dofs() const;
+    count_active_dofs() const
+    {
+      unsigned int n = 0;
+      for (unsigned int i = 0;
+           i < discretization->locally_owned_dofs().n_elements();
+           ++i)
+        n += !constraints.is_constrained[i];
+      return dealii::Utilities::MPI::sum(n, discretization->communicator);
+    }
+
+    Vector
+    find_start_forces();
+
+    Vector
+    find_start_acceleration() const;
+
+    NodalForces
+    make_nodal_forces(const MaterialPoints<dim> &points,
+                      double                     isolated_stiffness);
   };
 } // namespace impm
 

@@ -65,7 +65,7 @@ namespace impm
     /**
      * Fills the bodies with points that carry a layout, which ends with that
      * of the laws' history. Throws InputError where seed_body() or
-     * check_tractions() does. Collective.
+     * count_points_under_tractions() does. Collective.
      */
     MaterialPoints(const PointLayout         &layout,
                    const PointLayout         &history,

@@ -38,6 +38,8 @@ namespace impm
                                   const GeometryKind         geometry,
                                   const double               gamma)
   {
+    if (gamma == 0)
+      return;
     const auto         &stiffness = populated_cells.stiffness;
     std::vector<double> at_edge(stiffness.size());
     for (const auto &cell : populated_cells.cells)
@@ -125,7 +127,7 @@ namespace impm
 
   template <int dim>
   void
-  GhostPenalty<dim>::add_force(const Vector &u, Vector &force) const
+  GhostPenalty<dim>::apply(const Vector &u, Vector &image) const
   {
     for (const auto &face : faces)
       for (unsigned int c = 0; c < dim; ++c)
@@ -138,38 +140,9 @@ namespace impm
               double sum = 0;
               for (unsigned int b = 0; b < face.n_nodes; ++b)
                 sum += face.matrix[a][b] * values[b];
-              force.local_element(dim * face.nodes[a] + c) += sum;
+              image.local_element(dim * face.nodes[a] + c) += sum;
             }
         }
-  }
-
-  template <int dim>
-  void
-  GhostPenalty<dim>::add_diagonal(Vector &diagonal) const
-  {
-    for (const auto &face : faces)
-      for (unsigned int a = 0; a < face.n_nodes; ++a)
-        for (unsigned int c = 0; c < dim; ++c)
-          diagonal.local_element(dim * face.nodes[a] + c) += face.matrix[a][a];
-  }
-
-  template <int dim>
-  void
-  GhostPenalty<dim>::add_matrix(const bool only_pattern, const Block &add) const
-  {
-    FullMatrix<double> local;
-    for (const auto &face : faces)
-      {
-        if (!only_pattern)
-          {
-            local.reinit(dim * face.n_nodes, dim * face.n_nodes);
-            for (unsigned int a = 0; a < face.n_nodes; ++a)
-              for (unsigned int b = 0; b < face.n_nodes; ++b)
-                for (unsigned int c = 0; c < dim; ++c)
-                  local(dim * a + c, dim * b + c) = face.matrix[a][b];
-          }
-        add(face.nodes.data(), face.nodes.data() + face.n_nodes, local);
-      }
   }
 
   template <int dim>

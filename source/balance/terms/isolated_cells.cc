@@ -48,52 +48,79 @@ namespace impm
         }
       return label;
     }
+
+    /** Whether a cell belongs to such a piece, by active index. */
+    template <int dim>
+    std::vector<char>
+    find_isolated_cells(const PopulatedCells<dim>  &populated,
+                        const Discretization<dim>  &discretization,
+                        const StepConstraints<dim> &constraints,
+                        const bool                  axisymmetric)
+    {
+      const auto label = label_pieces(populated, discretization);
+
+      // Directions, as bits, in which something holds a piece; the hoop strain
+      // does along the radius.
+      std::map<double, unsigned int> held;
+      for (const auto &cell : populated.cells)
+        {
+          unsigned int &bits = held[label[cell.cell->active_cell_index()]];
+          if (axisymmetric)
+            bits |= 1u;
+          for (const unsigned int node : cell.nodes)
+            for (unsigned int d = 0; d < dim; ++d)
+              if (constraints.is_prescribed(dim * node + d))
+                bits |= 1u << d;
+        }
+      for (const auto &others :
+           Utilities::MPI::all_gather(discretization.communicator, held))
+        for (const auto &[piece, bits] : others)
+          held[piece] |= bits;
+
+      std::vector<char> isolated(label.size());
+      for (unsigned int i = 0; i < label.size(); ++i)
+        {
+          const auto piece = held.find(label[i]);
+          isolated[i] = piece != held.end() && piece->second != (1u << dim) - 1;
+        }
+      return isolated;
+    }
   } // namespace
 
   template <int dim>
-  std::vector<char>
-  find_isolated_cells(const PopulatedCells<dim>  &populated,
-                      const Discretization<dim>  &discretization,
-                      const StepConstraints<dim> &constraints,
-                      const bool                  axisymmetric)
+  IsolatedCells<dim>::IsolatedCells(const MaterialPoints<dim>  &points,
+                                    const Footprints<dim>      &footprints,
+                                    const PopulatedCells<dim>  &populated,
+                                    const Discretization<dim>  &discretization,
+                                    const StepConstraints<dim> &constraints,
+                                    const double                factor)
   {
-    const auto label = label_pieces(populated, discretization);
-
-    // Directions, as bits, in which something holds a piece; the hoop strain
-    // does along the radius.
-    std::map<double, unsigned int> held;
+    discretization.initialize(stiffness);
+    const auto isolated =
+      find_isolated_cells(populated,
+                          discretization,
+                          constraints,
+                          points.layout.geometry == GeometryKind::axisymmetric);
     for (const auto &cell : populated.cells)
-      {
-        unsigned int &bits = held[label[cell.cell->active_cell_index()]];
-        if (axisymmetric)
-          bits |= 1u;
-        for (const unsigned int node : cell.nodes)
-          for (unsigned int d = 0; d < dim; ++d)
-            if (constraints.is_prescribed(dim * node + d))
-              bits |= 1u << d;
-      }
-    for (const auto &others :
-         Utilities::MPI::all_gather(discretization.communicator, held))
-      for (const auto &[piece, bits] : others)
-        held[piece] |= bits;
-
-    std::vector<char> isolated(label.size());
-    for (unsigned int i = 0; i < label.size(); ++i)
-      {
-        const auto piece = held.find(label[i]);
-        isolated[i] = piece != held.end() && piece->second != (1u << dim) - 1;
-      }
-    return isolated;
+      n += isolated[cell.cell->active_cell_index()];
+    n = Utilities::MPI::sum(n, discretization.communicator);
+    for (const auto &cell : footprints.cells)
+      if (isolated[cell.cell->active_cell_index()])
+        {
+          double sum = 0;
+          for (unsigned int e = cell.begin; e < cell.end; ++e)
+            sum += factor * footprints.weight[e] *
+                   points.initial_volume(footprints.point[e]) *
+                   points.material(footprints.point[e]).stiffness() /
+                   (cell.extent * cell.extent);
+          for (const unsigned int node : cell.nodes)
+            for (unsigned int c = 0; c < dim; ++c)
+              stiffness.local_element(dim * node + c) += sum;
+        }
+    stiffness.compress(VectorOperation::add);
+    discretization.condense_hanging(stiffness);
   }
 
-  template std::vector<char>
-  find_isolated_cells(const PopulatedCells<2> &,
-                      const Discretization<2> &,
-                      const StepConstraints<2> &,
-                      bool);
-  template std::vector<char>
-  find_isolated_cells(const PopulatedCells<3> &,
-                      const Discretization<3> &,
-                      const StepConstraints<3> &,
-                      bool);
+  template struct IsolatedCells<2>;
+  template struct IsolatedCells<3>;
 } // namespace impm

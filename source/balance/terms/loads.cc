@@ -1,88 +1,151 @@
-#include <impm/balance/terms/face_traction.h>
+#include <deal.II/base/quadrature_lib.h>
+
+#include <deal.II/fe/fe_q.h>
+#include <deal.II/fe/fe_values.h>
+
 #include <impm/balance/terms/loads.h>
 #include <impm/balance/terms/point_traction.h>
+
+#include <algorithm>
 
 namespace impm
 {
   using namespace dealii;
 
-  double
-  Loads::energy(const Vector &u) const
-  {
-    double sum = 0;
-    for (unsigned int i = 0; i < at_end.locally_owned_size(); ++i)
-      sum += at_end.local_element(i) * u.local_element(i);
-    return sum;
-  }
-
   namespace
   {
-    template <int dim>
+    /** Takes a density, times its amount at every point, from the forces of
+     * the points. */
+    template <int dim, typename Amount>
     void
-    add_body_force(const LoadsSpec<dim>      &spec,
-                   const MaterialPoints<dim> &points,
-                   const Footprints<dim>     &footprints,
-                   const double               instant,
-                   Vector                    &load)
+    subtract(FunctionParser<dim>         &density,
+             const bool                   is_initial,
+             const double                 instant,
+             const MaterialPoints<dim>   &points,
+             const Amount                &amount,
+             std::vector<Tensor<1, dim>> &forces)
     {
-      spec.body_force->set_time(instant);
-      dealii::Vector<double>      value(dim);
-      std::vector<Tensor<1, dim>> forces(points.size());
-      unsigned int                p = 0;
+      density.set_time(instant);
+      dealii::Vector<double> value(dim);
+      unsigned int           next = 0;
       for (const auto &particle : points.sorted.particles)
         {
-          spec.body_force->vector_value(spec.body_force_is_initial ?
-                                          points.initial_position(p) :
-                                          particle.get_location(),
-                                        value);
+          const unsigned int p = next++;
+          if (amount(p) == 0)
+            continue;
+          density.vector_value(is_initial ? points.initial_position(p) :
+                                            particle.get_location(),
+                               value);
           for (unsigned int c = 0; c < dim; ++c)
-            forces[p][c] = -points.mass(p) * value[c];
-          ++p;
+            forces[p][c] -= amount(p) * value[c];
+        }
+    }
+
+    template <int dim>
+    void
+    subtract_forces_on_points(const LoadsSpec<dim>      &spec,
+                              const MaterialPoints<dim> &points,
+                              const Footprints<dim>     &footprints,
+                              const double               instant,
+                              Vector                    &load)
+    {
+      std::vector<Tensor<1, dim>> forces(points.size());
+      if (spec.body_force)
+        subtract(
+          *spec.body_force,
+          spec.body_force_is_initial,
+          instant,
+          points,
+          [&](const unsigned int p) { return points.mass(p); },
+          forces);
+      for (const auto &traction : spec.tractions)
+        {
+          const auto area = points.layout.offset(traction_field(traction));
+          subtract(
+            *traction.value,
+            traction.is_initial,
+            instant,
+            points,
+            [&](const unsigned int p) { return points.fields(p)[area]; },
+            forces);
         }
       footprints.spread(forces, load);
+    }
+
+    template <int dim>
+    void
+    subtract_forces_on_faces(const Scene<dim>          &scene,
+                             const BackgroundGrid<dim> &grid,
+                             const PopulatedCells<dim> &populated,
+                             const double               instant,
+                             Vector                    &load)
+    {
+      const FE_Q<dim>        fe(1);
+      FEFaceValues<dim>      values(*grid.mapping,
+                               fe,
+                               QGauss<dim - 1>(3),
+                               update_values | update_quadrature_points |
+                                 update_JxW_values);
+      dealii::Vector<double> traction(dim);
+      for (const auto &[cell, nodes] : populated.cells)
+        for (const unsigned int f : cell->face_indices())
+          {
+            if (!cell->face(f)->at_boundary())
+              continue;
+            const auto &face = scene.faces[cell->face(f)->boundary_id()];
+            if (!face.traction)
+              continue;
+            face.traction->set_time(instant);
+            values.reinit(
+              typename Triangulation<dim>::active_cell_iterator(cell), f);
+            for (const unsigned int q : values.quadrature_point_indices())
+              {
+                const auto &x = values.quadrature_point(q);
+                face.traction->vector_value(x, traction);
+                const double around =
+                  scene.geometry == GeometryKind::axisymmetric ?
+                    2 * numbers::PI * x[0] :
+                    1.;
+                for (unsigned int v = 0; v < nodes.size(); ++v)
+                  for (unsigned int c = 0; c < dim; ++c)
+                    load.local_element(dim * nodes[v] + c) -=
+                      around * values.JxW(q) * values.shape_value(v, q) *
+                      traction[c];
+              }
+          }
     }
   } // namespace
 
   template <int dim>
-  Vector
-  gather_loads(const LoadsSpec<dim>      &spec,
-               const Faces<dim>          &faces,
-               const MaterialPoints<dim> &points,
-               const Footprints<dim>     &footprints,
-               const BackgroundGrid<dim> &grid,
-               const Discretization<dim> &discretization,
-               const PopulatedCells<dim> &populated,
-               const double               instant)
+  Loads<dim>::Loads(const Scene<dim>          &scene,
+                    const BackgroundGrid<dim> &grid,
+                    const MaterialPoints<dim> &points,
+                    const Footprints<dim>     &footprints,
+                    const PopulatedCells<dim> &populated,
+                    const Discretization<dim> &discretization,
+                    const double               from,
+                    const double               to)
   {
-    Vector load;
-    discretization.initialize(load);
-    if (spec.body_force)
-      add_body_force(spec, points, footprints, instant, load);
-    add_point_tractions(spec.tractions, points, footprints, instant, -1., load);
-    if (grid.is_lagrangian)
-      add_face_tractions(
-        faces, points.layout.geometry, grid, populated, instant, -1., load);
-    load.compress(VectorOperation::add);
-    discretization.condense_hanging(load);
-    return load;
+    const bool on_points =
+      scene.loads.body_force || !scene.loads.tractions.empty();
+    const bool on_faces =
+      std::any_of(scene.faces.begin(), scene.faces.end(), [](const auto &face) {
+        return face.traction != nullptr;
+      });
+    const auto gather = [&](const double instant, Vector &load) {
+      discretization.initialize(load);
+      if (on_points)
+        subtract_forces_on_points(
+          scene.loads, points, footprints, instant, load);
+      if (on_faces)
+        subtract_forces_on_faces(scene, grid, populated, instant, load);
+      load.compress(VectorOperation::add);
+      discretization.condense_hanging(load);
+    };
+    gather(from, at_start);
+    gather(to, at_end);
   }
 
-  template Vector
-  gather_loads(const LoadsSpec<2> &,
-               const Faces<2> &,
-               const MaterialPoints<2> &,
-               const Footprints<2> &,
-               const BackgroundGrid<2> &,
-               const Discretization<2> &,
-               const PopulatedCells<2> &,
-               double);
-  template Vector
-  gather_loads(const LoadsSpec<3> &,
-               const Faces<3> &,
-               const MaterialPoints<3> &,
-               const Footprints<3> &,
-               const BackgroundGrid<3> &,
-               const Discretization<3> &,
-               const PopulatedCells<3> &,
-               double);
+  template struct Loads<2>;
+  template struct Loads<3>;
 } // namespace impm

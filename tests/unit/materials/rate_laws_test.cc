@@ -31,10 +31,10 @@ namespace
     const auto form = point.law.form();
     const auto inverse =
       form == Material::Form::linearized ? one : invert(increment);
-    kinematics.carry_back_stress(point.response.kirchhoff_stress,
-                                 inverse,
-                                 1.,
-                                 stress.data());
+    kinematics.carry_back(kinematics.list(point.response.kirchhoff_stress),
+                          inverse,
+                          1.,
+                          stress.data());
     kinematics.spatial_tangent(point.response, form, spatial.data());
     kinematics.carry_back_tangent(spatial.data(), inverse, 1., result.data());
     Carried carried;

@@ -1,9 +1,13 @@
 #ifndef impm_balance_terms_ghost_penalty_h
 #define impm_balance_terms_ghost_penalty_h
 
+#include <deal.II/base/array_view.h>
+#include <deal.II/base/tensor.h>
+
 #include <deal.II/fe/mapping.h>
 
-#include <impm/balance/terms/term.h>
+#include <deal.II/lac/full_matrix.h>
+
 #include <impm/grid/populated_cells.h>
 
 #include <vector>
@@ -22,7 +26,7 @@ namespace impm
    * untouched; symmetric, and derives from the energy u . G u / 2.
    */
   template <int dim>
-  class GhostPenalty : public Term
+  class GhostPenalty
   {
   public:
     static constexpr unsigned int max_nodes = 2 * Footprints<dim>::n_nodes;
@@ -34,32 +38,44 @@ namespace impm
       dealii::Tensor<2, static_cast<int>(max_nodes)> matrix; ///< per component
     };
 
-    /** `gamma` in units of Young's modulus. Collective. */
+    /** `gamma` in units of Young's modulus; without faces if it is zero.
+     * Collective. */
     GhostPenalty(const PopulatedCells<dim>  &populated,
                  const dealii::Mapping<dim> &mapping,
                  const Discretization<dim>  &discretization,
                  GeometryKind                geometry,
                  double                      gamma);
 
-    /** Adds G u. */
+    /** image += G u; ghosts are not summed. */
     void
-    add_force(const Vector &u, Vector &force) const override;
+    apply(const Vector &u, Vector &image) const;
 
     /** u . G u / 2 of the faces of this rank. */
     double
-    energy(const Vector &u) const override;
+    energy(const Vector &u) const;
 
+    /** The blocks of G, as of InternalForces. */
+    template <typename Take>
     void
-    apply(const Vector &direction, Vector &image) const override
+    for_each_block(const bool only_pattern, const Take &take) const
     {
-      add_force(direction, image);
+      dealii::FullMatrix<double> block;
+      for (const auto &face : faces)
+        {
+          const unsigned int n = face.n_nodes;
+          if (!only_pattern)
+            {
+              block.reinit(dim * n, dim * n);
+              for (unsigned int a = 0; a < n; ++a)
+                for (unsigned int b = 0; b < n; ++b)
+                  for (unsigned int c = 0; c < dim; ++c)
+                    block(dim * a + c, dim * b + c) = face.matrix[a][b];
+            }
+          take(dealii::make_array_view(face.nodes.begin(),
+                                       face.nodes.begin() + n),
+               block);
+        }
     }
-
-    void
-    add_diagonal(Vector &diagonal) const override;
-
-    void
-    add_matrix(bool only_pattern, const Block &add) const override;
 
     std::vector<Face> faces; ///< those that this rank works on
   };

@@ -1,8 +1,11 @@
 #ifndef impm_balance_terms_internal_forces_h
 #define impm_balance_terms_internal_forces_h
 
+#include <deal.II/base/array_view.h>
+
+#include <deal.II/lac/full_matrix.h>
+
 #include <impm/balance/point_response.h>
-#include <impm/balance/terms/term.h>
 #include <impm/footprints/footprints.h>
 
 #include <vector>
@@ -16,52 +19,58 @@ namespace impm
    * Newmark note carried back by dF^-1; see PointResponse.
    */
   template <int dim>
-  class InternalForces : public Term
+  class InternalForces
   {
   public:
-    /** For footprints with patches, and the points' trial state. The smallest
-     * extent of a cell (m) tells how large a slope can be. */
+    /** For footprints, which have patches when a matrix is wanted, and the
+     * points' trial state. */
     InternalForces(const Footprints<dim> &footprints,
-                   PointResponse<dim>    &response,
-                   double                 smallest_cell_extent);
+                   PointResponse<dim>    &response)
+      : response(response)
+      , prints(footprints)
+      , axisymmetric(response.kinematics.axisymmetric)
+      , n_gradients(response.kinematics.size)
+    {}
 
+    /** Takes the state at an increment, which all else refers to. Returns
+     * false when a point has no stress. */
     bool
-    evaluate(const Vector &u, bool with_tangent) override;
+    evaluate(const Vector &u, const bool with_tangent)
+    {
+      gradients_at_points(u, response.gradients);
+      return response.evaluate(with_tangent);
+    }
 
+    /** Adds f of the response as it is (N); ghosts are not summed. */
     void
-    add_force(const Vector &, Vector &force) const override
+    add_force(Vector &force) const
     {
       add_forces_of(response.stresses, force);
     }
 
-    double
-    energy(const Vector &) const override
+    /** image += df/du direction; ghosts are not summed. */
+    void
+    apply(const Vector &direction, Vector &image) const;
+
+    /** Calls `take` with the nodes of blocks of df/du, by local number, and
+     * with the blocks, empty ones if only the pattern is wanted. */
+    template <typename Take>
+    void
+    for_each_block(const bool only_pattern, const Take &take) const
     {
-      return potential;
+      dealii::FullMatrix<double> block;
+      for (const auto &patch : prints.patches)
+        {
+          if (!only_pattern)
+            patch_matrix(patch, block);
+          take(dealii::make_array_view(
+                 prints.patch_nodes.begin() + patch.begin_nodes,
+                 prints.patch_nodes.begin() + patch.end_nodes),
+               block);
+        }
     }
 
-    void
-    add_squares_of_parts(const Vector &,
-                         const ResidualNorm  &norm,
-                         std::vector<double> &squares) const override;
-
-    bool
-    add_start_force(Vector &force) override;
-
-    void
-    apply(const Vector &direction, Vector &image) const override;
-
-    void
-    add_diagonal(Vector &diagonal) const override;
-
-    void
-    add_matrix(bool only_pattern, const Block &add) const override;
-
-    void
-    project_tangent() override
-    {
-      response.project_tangent();
-    }
+    PointResponse<dim> &response;
 
   private:
     using Patch = typename Footprints<dim>::Patch;
@@ -77,6 +86,10 @@ namespace impm
     void
     patch_matrix(const Patch &patch, dealii::FullMatrix<double> &matrix) const;
 
+    /** Fills `slopes` and `shares` for a point on all nodes of its patch. */
+    void
+    place_on_patch(unsigned int point) const;
+
     template <typename Size>
     void
     add_points(const Patch                &patch,
@@ -87,14 +100,11 @@ namespace impm
     add_coupling(const Patch &patch, dealii::FullMatrix<double> &matrix) const;
 
     const Footprints<dim> &prints;
-    PointResponse<dim>    &response;
     const bool             axisymmetric;
     const unsigned int     n_gradients; ///< values of a gradient
-    const double           extent;
-    double                 potential = 0;
 
     mutable std::vector<double> gradient_changes, stress_changes;
-    mutable std::vector<double> slopes, shares; ///< of a point on its patch
+    mutable std::vector<double> slopes, shares;
   };
 } // namespace impm
 

@@ -1,71 +1,35 @@
 #ifndef impm_balance_terms_loads_h
 #define impm_balance_terms_loads_h
 
-#include <impm/balance/terms/term.h>
 #include <impm/footprints/footprints.h>
 #include <impm/grid/populated_cells.h>
-#include <impm/input/sections/boundary_conditions.h>
-#include <impm/input/sections/loads.h>
-
-#include <algorithm>
+#include <impm/scene/scene.h>
 
 namespace impm
 {
-  /** Whether anything acts from outside but what is prescribed. */
-  template <int dim>
-  bool
-  has_loads(const LoadsSpec<dim> &spec, const Faces<dim> &faces)
-  {
-    return spec.body_force || !spec.tractions.empty() ||
-           std::any_of(faces.begin(), faces.end(), [](const auto &face) {
-             return face.traction != nullptr;
-           });
-  }
-
   /**
-   * Minus the forces from outside at an instant (N), with nothing at hanging
-   * nodes: body force, tractions on points, on faces of a Lagrangian grid.
-   * Collective.
+   * Forces from outside, which do not depend on the increment: body force,
+   * tractions on points (Sulsky & Kaul 2004, eq. 2.2.7, the points of a layer
+   * being the quadrature points of the surface) and, with a Lagrangian grid, on
+   * faces of the domain that have material behind them. Tractions are forces
+   * per area as it was made, whose direction does not follow the material.
    */
   template <int dim>
-  Vector
-  gather_loads(const LoadsSpec<dim>      &spec,
-               const Faces<dim>          &faces,
-               const MaterialPoints<dim> &points,
-               const Footprints<dim>     &footprints,
-               const BackgroundGrid<dim> &grid,
-               const Discretization<dim> &discretization,
-               const PopulatedCells<dim> &populated,
-               double                     instant);
-
-  /** Forces from outside, which do not depend on the increment: dead loads. */
-  class Loads : public Term
+  struct Loads
   {
-  public:
+    /** For the step from one time to another. Collective. */
+    Loads(const Scene<dim>          &scene,
+          const BackgroundGrid<dim> &grid,
+          const MaterialPoints<dim> &points,
+          const Footprints<dim>     &footprints,
+          const PopulatedCells<dim> &populated,
+          const Discretization<dim> &discretization,
+          double                     from,
+          double                     to);
+
     /** Minus the forces at the start and at the end of the step (N), with
      * nothing at hanging nodes. */
-    Loads(Vector at_start, Vector at_end)
-      : at_start(std::move(at_start))
-      , at_end(std::move(at_end))
-    {}
-
-    void
-    add_force(const Vector &, Vector &force) const override
-    {
-      force += at_end;
-    }
-
-    double
-    energy(const Vector &u) const override;
-
-    bool
-    add_start_force(Vector &force) override
-    {
-      force += at_start;
-      return true;
-    }
-
-    const Vector at_start, at_end;
+    Vector at_start, at_end;
   };
 } // namespace impm
 

@@ -31,7 +31,7 @@ namespace
     model.begin_step();
     Tensor<1, dim> sum;
     for (unsigned int i = 0; i < model.vector().locally_owned_size(); ++i)
-      sum[i % dim] -= model.problem->loads->at_end.local_element(i);
+      sum[i % dim] -= model.problem->loads.at_end.local_element(i);
     sum = Utilities::MPI::sum(sum, MPI_COMM_WORLD);
     EXPECT_LT((sum - expected).norm(), 1e-13 * expected.norm());
   }

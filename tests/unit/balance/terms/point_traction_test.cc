@@ -33,7 +33,7 @@ namespace
   {
     Tensor<1, dim> sum;
     for (unsigned int i = 0; i < model.vector().locally_owned_size(); ++i)
-      sum[i % dim] -= model.problem->loads->at_end.local_element(i);
+      sum[i % dim] -= model.problem->loads.at_end.local_element(i);
     return Utilities::MPI::sum(sum, MPI_COMM_WORLD);
   }
 

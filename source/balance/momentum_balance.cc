@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace impm
 {
@@ -41,27 +42,27 @@ namespace impm
     if (Utilities::MPI::min(fine ? 1 : 0, communicator) == 0)
       return result;
 
-    const double weight    = parts.end_weight;
-    double       potential = 0;
-    const auto   add_work  = [&](const double factor, const Vector &force) {
-      double sum = 0;
-      for (unsigned int i = 0; i < force.locally_owned_size(); ++i)
-        sum += force.local_element(i) * strain_u.local_element(i);
-      potential += factor * sum;
+    const double weight  = parts.end_weight;
+    const auto   work_of = [&](const Vector &force) {
+      return std::inner_product(force.begin(),
+                                force.end(),
+                                strain_u.begin(),
+                                0.);
     };
-    forces = 0;
+    double potential = 0;
+    forces           = 0;
     if (weight > 0)
       {
         add_forces_of_strain(strain_u, forces);
         potential = weight * (parts.internal_forces.response.potential +
-                              parts.ghost_penalty.energy(strain_u));
-        add_work(weight, parts.loads.at_end);
+                              parts.ghost_penalty.energy(strain_u) +
+                              work_of(parts.loads.at_end));
       }
     const auto strain_forces = parts.norm.squares(forces);
     if (weight < 1)
       {
         forces.sadd(weight, 1 - weight, parts.start_forces);
-        add_work(1 - weight, parts.start_forces);
+        potential += (1 - weight) * work_of(parts.start_forces);
       }
     parts.nodal_forces.add_force(u, forces);
     const Vector *felt = &u;
@@ -214,49 +215,42 @@ namespace impm
 
   template <int dim>
   void
-  MomentumBalance<dim>::assemble_stiffness(SparseMatrix &matrix) const
+  MomentumBalance<dim>::assemble(SparseMatrix &matrix) const
   {
-    const auto &discretization = parts.discretization;
-    matrix.set_zero();
+    const auto   &discretization = parts.discretization;
+    SparseMatrix &K              = parts.smoothing ? *stiffness : matrix;
+    K.set_zero();
     for_each_block(false, [&](const auto &nodes, auto &block) {
       if (parts.end_weight != 1)
         block *= parts.end_weight;
-      matrix.add_block(block,
-                       discretization.dofs_of_nodes(nodes.begin(),
-                                                    nodes.end()));
+      K.add_block(block,
+                  discretization.dofs_of_nodes(nodes.begin(), nodes.end()));
     });
-    matrix.end_adding();
+    K.end_adding();
 
     // Rows that nothing has touched. A free one, without any stiffness, needs
     // a place for its inertia: products leave out what is zero.
     const auto &partitioner = *discretization.numbering->partitioner;
     double      largest     = 0;
     for (const auto dof : discretization.locally_owned_dofs())
-      largest = std::max(largest, matrix.diagonal(dof));
+      largest = std::max(largest, K.diagonal(dof));
     largest = Utilities::MPI::max(largest, discretization.communicator);
     for (unsigned int i = 0; i < partitioner.locally_owned_size(); ++i)
       {
         const auto dof = partitioner.local_to_global(i);
-        if (matrix.diagonal(dof) != 0)
+        if (K.diagonal(dof) != 0)
           continue;
         if (is_constrained(i))
-          matrix.add(dof, dof, largest);
+          K.add(dof, dof, largest);
         else if (parts.smoothing)
-          matrix.add(dof, dof, std::numeric_limits<double>::min());
+          K.add(dof, dof, std::numeric_limits<double>::min());
       }
-    matrix.end_adding();
-  }
+    K.end_adding();
 
-  template <int dim>
-  void
-  MomentumBalance<dim>::assemble(SparseMatrix &matrix) const
-  {
-    assemble_stiffness(parts.smoothing ? *stiffness : matrix);
     if (parts.smoothing)
-      matrix.multiply(*stiffness, parts.smoothing->scaling, *spread_mass);
+      matrix.multiply(K, parts.smoothing->scaling, *spread_mass);
     work = 0;
     parts.nodal_forces.add_diagonal(work);
-    const auto &partitioner = *parts.discretization.numbering->partitioner;
     for (unsigned int i = 0; i < work.locally_owned_size(); ++i)
       if (!is_constrained(i) && work.local_element(i) > 0)
         {

@@ -33,16 +33,6 @@ namespace impm
   {}
 
   template <int dim>
-  Tensor<2, 3>
-  PointResponse<dim>::increment(const unsigned int point) const
-  {
-    auto dF = kinematics.deformation(&gradients[point * kinematics.size]);
-    if (is_plane_stress)
-      dF[2][2] = thickening[point];
-    return average.includes(point) ? average.average(point, dF) : dF;
-  }
-
-  template <int dim>
   bool
   PointResponse<dim>::evaluate_law(Batch &batch, const bool with_tangent)
   {
@@ -206,26 +196,27 @@ namespace impm
 
   namespace
   {
-    /** The positive part of a symmetric matrix, given by rows. */
+    /** Takes the positive part of a symmetric matrix. */
     void
-    make_positive(const unsigned int n, double *A)
+    make_positive(FullMatrix<double> &matrix)
     {
-      LAPACKFullMatrix<double> matrix(n);
+      const unsigned int       n = matrix.m();
+      LAPACKFullMatrix<double> symmetric(n);
       FullMatrix<double>       vectors(n);
       dealii::Vector<double>   values;
       for (unsigned int a = 0; a < n; ++a)
         for (unsigned int b = 0; b < n; ++b)
-          matrix(a, b) = 0.5 * (A[a * n + b] + A[b * n + a]);
-      const double bound = matrix.frobenius_norm();
-      matrix.compute_eigenvalues_symmetric(
+          symmetric(a, b) = 0.5 * (matrix(a, b) + matrix(b, a));
+      const double bound = symmetric.frobenius_norm();
+      symmetric.compute_eigenvalues_symmetric(
         -2 * bound, 2 * bound, 1e-14 * bound, values, vectors);
       if (values.size() < n || values[0] >= 0)
         return;
-      std::fill(A, A + n * n, 0.);
+      matrix = 0;
       for (unsigned int k = 0; k < n; ++k)
         for (unsigned int a = 0; a < n; ++a)
           for (unsigned int b = 0; b < n; ++b)
-            A[a * n + b] +=
+            matrix(a, b) +=
               std::max(values[k], 0.) * vectors(a, k) * vectors(b, k);
     }
   } // namespace
@@ -234,33 +225,32 @@ namespace impm
   void
   PointResponse<dim>::project_tangent()
   {
-    const unsigned int  n_g = kinematics.size, m = n_g + 1;
-    std::vector<double> bordered(m * m);
+    const unsigned int n = kinematics.size;
+    FullMatrix<double> form;
     for (unsigned int p = 0; p < points.size(); ++p)
       {
-        double *A = &tangents[p * n_g * n_g];
-        if (!average.includes(p))
-          {
-            make_positive(n_g, A);
-            continue;
-          }
-        // The form in (g, d ln theta) of a point.
-        double *b = &average.coupling[p * n_g];
-        for (unsigned int i = 0; i < n_g; ++i)
-          {
-            std::copy_n(A + i * n_g, n_g, &bordered[i * m]);
-            bordered[i * m + n_g] = bordered[n_g * m + i] = b[i];
-          }
-        bordered[m * m - 1] = average.square[p];
-        make_positive(m, bordered.data());
-        for (unsigned int i = 0; i < n_g; ++i)
-          {
-            std::copy_n(&bordered[i * m], n_g, A + i * n_g);
-            b[i] = bordered[i * m + n_g];
-          }
+        // The form in g or, with F-bar, in (g, d ln theta) of a point.
+        const bool coupled = average.includes(p);
+        form.reinit(n + coupled, n + coupled);
+        double *A = &tangents[p * n * n];
+        for (unsigned int i = 0; i < n; ++i)
+          for (unsigned int j = 0; j < n; ++j)
+            form(i, j) = A[i * n + j];
+        for (unsigned int i = 0; coupled && i < n; ++i)
+          form(i, n) = form(n, i) = average.coupling[p * n + i];
+        if (coupled)
+          form(n, n) = average.square[p];
+        make_positive(form);
+        for (unsigned int i = 0; i < n; ++i)
+          for (unsigned int j = 0; j < n; ++j)
+            A[i * n + j] = form(i, j);
+        if (!coupled)
+          continue;
+        for (unsigned int i = 0; i < n; ++i)
+          average.coupling[p * n + i] = form(i, n);
         average.group_square[average.groups[p]] +=
-          bordered[m * m - 1] - average.square[p];
-        average.square[p] = bordered[m * m - 1];
+          form(n, n) - average.square[p];
+        average.square[p] = form(n, n);
       }
   }
 

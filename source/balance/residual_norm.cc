@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace impm
 {
@@ -135,8 +136,8 @@ namespace impm
   {
     std::vector<double> sums(n_groups());
     if (shares.empty())
-      for (unsigned int i = 0; i < force.locally_owned_size(); ++i)
-        sums[0] += force.local_element(i) * force.local_element(i);
+      sums[0] =
+        std::inner_product(force.begin(), force.end(), force.begin(), 0.);
     else
       for (unsigned int g = 0; g < n_groups(); ++g)
         for (const auto &share : shares[g])

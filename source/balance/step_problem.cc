@@ -66,7 +66,12 @@ namespace impm
                                         NodalMotion())
     , n_limited_boxes(
         Utilities::MPI::sum(builder.n_limited_boxes, grid.communicator))
-    , n_active_dofs(count_active_dofs())
+    , n_active_dofs(Utilities::MPI::sum<unsigned int>(
+        std::count(constraints.is_constrained.begin(),
+                   constraints.is_constrained.begin() +
+                     discretization->locally_owned_dofs().n_elements(),
+                   0),
+        grid.communicator))
     , internal_forces(footprints, response)
     , ghost_penalty(populated,
                     *grid.mapping,

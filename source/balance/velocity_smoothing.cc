@@ -67,65 +67,53 @@ namespace impm
   }
 
   template <int dim>
-  FullMatrix<double>
-  VelocitySmoothing<dim>::consistent_mass(
-    const typename Footprints<dim>::Patch &patch) const
-  {
-    constexpr unsigned int n_nodes = Footprints<dim>::n_nodes;
-    const unsigned int     n       = patch.end_nodes - patch.begin_nodes;
-    dealii::Vector<double> shares(n);
-    FullMatrix<double>     matrix(n);
-    for (unsigned int i = patch.begin_points; i < patch.end_points; ++i)
-      {
-        const unsigned int p = footprints.patch_points[i];
-        shares               = 0;
-        for (unsigned int k = footprints.first[p]; k < footprints.first[p + 1];
-             ++k)
-          for (unsigned int v = 0; v < n_nodes; ++v)
-            {
-              const unsigned int e = footprints.entries[k];
-              shares[footprints.place[e * n_nodes + v]] +=
-                footprints.value(e)[v];
-            }
-        for (unsigned int a = 0; a < n; ++a)
-          for (unsigned int b = 0; b < n; ++b)
-            matrix(a, b) += points.mass(p) * shares[a] * shares[b];
-      }
-    return matrix;
-  }
-
-  template <int dim>
-  SparseMatrix::Dofs
-  VelocitySmoothing<dim>::dofs(const typename Footprints<dim>::Patch &patch,
-                               const unsigned int component) const
-  {
-    SparseMatrix::Dofs result;
-    for (unsigned int n = patch.begin_nodes; n < patch.end_nodes; ++n)
-      result.push_back(scaling.get_partitioner()->local_to_global(
-        dim * footprints.patch_nodes[n] + component));
-    return result;
-  }
-
-  template <int dim>
   void
   VelocitySmoothing<dim>::fill_spread_mass(SparseMatrix &matrix) const
   {
     // Components do not mix.
+    const auto &partitioner = *discretization.numbering->partitioner;
+    const auto  dofs        = [&](const auto &patch, const unsigned int c) {
+      SparseMatrix::Dofs result;
+      for (unsigned int n = patch.begin_nodes; n < patch.end_nodes; ++n)
+        result.push_back(
+          partitioner.local_to_global(dim * footprints.patch_nodes[n] + c));
+      return result;
+    };
     for (const auto &patch : footprints.patches)
       for (unsigned int c = 0; c < dim; ++c)
         matrix.add_to_pattern(dofs(patch, c));
     matrix.end_pattern();
 
+    constexpr unsigned int n_nodes = Footprints<dim>::n_nodes;
+    FullMatrix<double>     mass; // sum_p m_p S_pI S_pJ of the nodes of a patch
+    dealii::Vector<double> shares;
     for (const auto &patch : footprints.patches)
       {
-        const auto mass = consistent_mass(patch);
+        const unsigned int n = patch.end_nodes - patch.begin_nodes;
+        mass.reinit(n, n);
+        for (unsigned int i = patch.begin_points; i < patch.end_points; ++i)
+          {
+            const unsigned int p = footprints.patch_points[i];
+            shares.reinit(n);
+            for (unsigned int k = footprints.first[p];
+                 k < footprints.first[p + 1];
+                 ++k)
+              for (unsigned int v = 0; v < n_nodes; ++v)
+                {
+                  const unsigned int e = footprints.entries[k];
+                  shares[footprints.place[e * n_nodes + v]] +=
+                    footprints.value(e)[v];
+                }
+            for (unsigned int a = 0; a < n; ++a)
+              for (unsigned int b = 0; b < n; ++b)
+                mass(a, b) += points.mass(p) * shares[a] * shares[b];
+          }
         for (unsigned int c = 0; c < dim; ++c)
           matrix.add_block(mass, dofs(patch, c));
       }
     matrix.end_adding();
 
     // Identity where constrained, whatever condensing has left there.
-    const auto &partitioner = *discretization.numbering->partitioner;
     for (unsigned int i = 0; i < partitioner.locally_owned_size(); ++i)
       if (constraints.is_constrained[i])
         {

@@ -1,6 +1,6 @@
 #include <deal.II/base/mpi.h>
 
-#include <impm/balance/terms/point_traction.h>
+#include <impm/balance/terms/loads.h>
 #include <impm/base/exceptions.h>
 #include <impm/points/material_points.h>
 #include <impm/scene/seeding.h>

@@ -1,6 +1,6 @@
 #include <deal.II/base/utilities.h>
 
-#include <impm/balance/terms/point_traction.h>
+#include <impm/balance/terms/loads.h>
 #include <impm/base/exceptions.h>
 #include <impm/base/files.h>
 #include <impm/footprints/scatter.h>

@@ -1,4 +1,4 @@
-#include <impm/balance/terms/point_traction.h>
+#include <impm/balance/terms/loads.h>
 #include <impm/points/material_points.h>
 #include <impm/scene/layout_choice.h>
 

@@ -212,10 +212,6 @@ namespace impm
         parts.discretization.communicator);
     }
 
-    /** Fills a matrix with what strain costs. */
-    void
-    assemble_stiffness(SparseMatrix &matrix) const;
-
     /** Takes apart the residual that `forces` have, which came of `strain
      * forces` alone before. */
     void

@@ -64,7 +64,13 @@ namespace impm
      * thickness that plane stress takes.
      */
     dealii::Tensor<2, 3>
-    increment(unsigned int point) const;
+    increment(const unsigned int point) const
+    {
+      auto dF = kinematics.deformation(&gradients[point * kinematics.size]);
+      if (is_plane_stress)
+        dF[2][2] = thickening[point];
+      return average.includes(point) ? average.average(point, dF) : dF;
+    }
 
     const double *
     trial_history(const unsigned int point) const

@@ -101,17 +101,6 @@ namespace impm
     MomentumBalance<dim>                                balance;
 
   private:
-    unsigned int
-    count_active_dofs() const
-    {
-      unsigned int n = 0;
-      for (unsigned int i = 0;
-           i < discretization->locally_owned_dofs().n_elements();
-           ++i)
-        n += !constraints.is_constrained[i];
-      return dealii::Utilities::MPI::sum(n, discretization->communicator);
-    }
-
     Vector
     find_start_forces();
 

@@ -56,15 +56,6 @@ namespace impm
     fill_spread_mass(SparseMatrix &matrix) const;
 
   private:
-    /** A component of the nodes of a patch, by global index. */
-    SparseMatrix::Dofs
-    dofs(const typename Footprints<dim>::Patch &patch,
-         unsigned int                           component) const;
-
-    /** sum_p m_p S_pI S_pJ of the points and nodes of a patch (kg). */
-    dealii::FullMatrix<double>
-    consistent_mass(const typename Footprints<dim>::Patch &patch) const;
-
     const MaterialPoints<dim>  &points;
     const Footprints<dim>      &footprints;
     const StepConstraints<dim> &constraints;

@@ -27,63 +27,20 @@ namespace impm
         {
           exchange_cell_data(discretization, label);
           changed = false;
-          for (bool again = true; again; changed = changed || again)
-            {
-              again = false;
-              for (const auto &cell : populated.cells)
+          for (const auto &cell : populated.cells)
+            for_each_neighbor<dim>(cell.cell, [&](const auto &neighbor) {
+              double      &own   = label[cell.cell->active_cell_index()];
+              const double other = label[neighbor->active_cell_index()];
+              if (other > 0 && other < own)
                 {
-                  double &own = label[cell.cell->active_cell_index()];
-                  for_each_neighbor<dim>(cell.cell, [&](const auto &neighbor) {
-                    const double other = label[neighbor->active_cell_index()];
-                    if (other > 0 && other < own)
-                      {
-                        own   = other;
-                        again = true;
-                      }
-                  });
+                  own     = other;
+                  changed = true;
                 }
-            }
+            });
           changed =
             Utilities::MPI::max(changed ? 1 : 0, discretization.communicator);
         }
       return label;
-    }
-
-    /** Whether a cell belongs to such a piece, by active index. */
-    template <int dim>
-    std::vector<char>
-    find_isolated_cells(const PopulatedCells<dim>  &populated,
-                        const Discretization<dim>  &discretization,
-                        const StepConstraints<dim> &constraints,
-                        const bool                  axisymmetric)
-    {
-      const auto label = label_pieces(populated, discretization);
-
-      // Directions, as bits, in which something holds a piece; the hoop strain
-      // does along the radius.
-      std::map<double, unsigned int> held;
-      for (const auto &cell : populated.cells)
-        {
-          unsigned int &bits = held[label[cell.cell->active_cell_index()]];
-          if (axisymmetric)
-            bits |= 1u;
-          for (const unsigned int node : cell.nodes)
-            for (unsigned int d = 0; d < dim; ++d)
-              if (constraints.is_prescribed(dim * node + d))
-                bits |= 1u << d;
-        }
-      for (const auto &others :
-           Utilities::MPI::all_gather(discretization.communicator, held))
-        for (const auto &[piece, bits] : others)
-          held[piece] |= bits;
-
-      std::vector<char> isolated(label.size());
-      for (unsigned int i = 0; i < label.size(); ++i)
-        {
-          const auto piece = held.find(label[i]);
-          isolated[i] = piece != held.end() && piece->second != (1u << dim) - 1;
-        }
-      return isolated;
     }
   } // namespace
 
@@ -95,17 +52,35 @@ namespace impm
                                     const StepConstraints<dim> &constraints,
                                     const double                factor)
   {
-    discretization.initialize(stiffness);
-    const auto isolated =
-      find_isolated_cells(populated,
-                          discretization,
-                          constraints,
-                          points.layout.geometry == GeometryKind::axisymmetric);
+    const auto label = label_pieces(populated, discretization);
+
+    // Directions, as bits, in which something holds a piece; the hoop strain
+    // does along the radius.
+    std::map<double, unsigned int> held;
     for (const auto &cell : populated.cells)
-      n += isolated[cell.cell->active_cell_index()];
+      {
+        unsigned int &bits = held[label[cell.cell->active_cell_index()]];
+        if (points.layout.geometry == GeometryKind::axisymmetric)
+          bits |= 1u;
+        for (const unsigned int node : cell.nodes)
+          for (unsigned int d = 0; d < dim; ++d)
+            if (constraints.is_prescribed(dim * node + d))
+              bits |= 1u << d;
+      }
+    for (const auto &others :
+         Utilities::MPI::all_gather(discretization.communicator, held))
+      for (const auto &[piece, bits] : others)
+        held[piece] |= bits;
+
+    const auto is_isolated = [&](const auto &cell) {
+      return held.at(label[cell->active_cell_index()]) != (1u << dim) - 1;
+    };
+    for (const auto &cell : populated.cells)
+      n += is_isolated(cell.cell);
     n = Utilities::MPI::sum(n, discretization.communicator);
+    discretization.initialize(stiffness);
     for (const auto &cell : footprints.cells)
-      if (isolated[cell.cell->active_cell_index()])
+      if (is_isolated(cell.cell))
         {
           double sum = 0;
           for (unsigned int e = cell.begin; e < cell.end; ++e)

@@ -4,7 +4,7 @@
 #include <deal.II/fe/fe_values.h>
 
 #include <impm/balance/terms/loads.h>
-#include <impm/balance/terms/point_traction.h>
+#include <impm/base/exceptions.h>
 
 #include <algorithm>
 
@@ -14,33 +14,6 @@ namespace impm
 
   namespace
   {
-    /** Takes a density, times its amount at every point, from the forces of
-     * the points. */
-    template <int dim, typename Amount>
-    void
-    subtract(FunctionParser<dim>         &density,
-             const bool                   is_initial,
-             const double                 instant,
-             const MaterialPoints<dim>   &points,
-             const Amount                &amount,
-             std::vector<Tensor<1, dim>> &forces)
-    {
-      density.set_time(instant);
-      dealii::Vector<double> value(dim);
-      unsigned int           next = 0;
-      for (const auto &particle : points.sorted.particles)
-        {
-          const unsigned int p = next++;
-          if (amount(p) == 0)
-            continue;
-          density.vector_value(is_initial ? points.initial_position(p) :
-                                            particle.get_location(),
-                               value);
-          for (unsigned int c = 0; c < dim; ++c)
-            forces[p][c] -= amount(p) * value[c];
-        }
-    }
-
     template <int dim>
     void
     subtract_forces_on_points(const LoadsSpec<dim>      &spec,
@@ -50,24 +23,36 @@ namespace impm
                               Vector                    &load)
     {
       std::vector<Tensor<1, dim>> forces(points.size());
+      dealii::Vector<double>      value(dim);
+      // a density, times its amount at every point
+      const auto subtract =
+        [&](auto &density, const bool is_initial, const auto &amount) {
+          density.set_time(instant);
+          unsigned int next = 0;
+          for (const auto &particle : points.sorted.particles)
+            {
+              const unsigned int p = next++;
+              if (amount(p) == 0)
+                continue;
+              density.vector_value(is_initial ? points.initial_position(p) :
+                                                particle.get_location(),
+                                   value);
+              for (unsigned int c = 0; c < dim; ++c)
+                forces[p][c] -= amount(p) * value[c];
+            }
+        };
       if (spec.body_force)
-        subtract(
-          *spec.body_force,
-          spec.body_force_is_initial,
-          instant,
-          points,
-          [&](const unsigned int p) { return points.mass(p); },
-          forces);
+        subtract(*spec.body_force,
+                 spec.body_force_is_initial,
+                 [&](const unsigned int p) { return points.mass(p); });
       for (const auto &traction : spec.tractions)
         {
           const auto area = points.layout.offset(traction_field(traction));
-          subtract(
-            *traction.value,
-            traction.is_initial,
-            instant,
-            points,
-            [&](const unsigned int p) { return points.fields(p)[area]; },
-            forces);
+          subtract(*traction.value,
+                   traction.is_initial,
+                   [&](const unsigned int p) {
+                     return points.fields(p)[area];
+                   });
         }
       footprints.spread(forces, load);
     }
@@ -146,6 +131,34 @@ namespace impm
     gather(to, at_end);
   }
 
+  template <int dim>
+  std::vector<types::particle_index>
+  count_points_under_tractions(const Tractions<dim>      &tractions,
+                               const MaterialPoints<dim> &points)
+  {
+    std::vector<types::particle_index> counts;
+    for (const auto &traction : tractions)
+      {
+        const unsigned int area =
+          points.layout.offset(traction_field(traction));
+        types::particle_index n = 0;
+        for (unsigned int p = 0; p < points.size(); ++p)
+          n += points.fields(p)[area] > 0;
+        counts.push_back(Utilities::MPI::sum(n, points.communicator));
+        if (counts.back() == 0)
+          throw InputError("Loads/" + traction.name + "/Where",
+                           "found no point of body '" + traction.body +
+                             "' where the expression is positive, allowed is "
+                             "one that picks a layer of points: they lie "
+                             "inside the surface, the first half their extent");
+      }
+    return counts;
+  }
+
   template struct Loads<2>;
   template struct Loads<3>;
+  template std::vector<types::particle_index>
+  count_points_under_tractions(const Tractions<2> &, const MaterialPoints<2> &);
+  template std::vector<types::particle_index>
+  count_points_under_tractions(const Tractions<3> &, const MaterialPoints<3> &);
 } // namespace impm

@@ -16,8 +16,7 @@ namespace impm
     double
     force_of_cell(const Bodies<dim>         &bodies,
                   const MaterialPoints<dim> &points,
-                  const Footprints<dim>     &footprints,
-                  const MPI_Comm             communicator)
+                  const Footprints<dim>     &footprints)
     {
       double stiffness = 0, volume = std::numeric_limits<double>::max();
       for (const auto &body : bodies)
@@ -34,37 +33,7 @@ namespace impm
       const bool axisymmetric =
         points.layout.geometry == GeometryKind::axisymmetric;
       return (axisymmetric ? 2 * numbers::PI : 1.) * stiffness *
-             Utilities::MPI::min(volume, communicator);
-    }
-
-    /** Forces (N) of the bodies of a group at a strain of one. */
-    template <int dim>
-    Vector
-    forces_at_unit_strain(const MaterialPoints<dim>       &points,
-                          const Footprints<dim>           &footprints,
-                          const Discretization<dim>       &discretization,
-                          const std::vector<unsigned int> &group_of_body,
-                          const unsigned int               group)
-    {
-      Vector forces;
-      discretization.initialize(forces);
-      for (const auto &cell : footprints.cells)
-        for (unsigned int e = cell.begin; e < cell.end; ++e)
-          {
-            const unsigned int p = footprints.point[e];
-            if (group_of_body[points.body(p)] != group)
-              continue;
-            const double force = footprints.weight[e] *
-                                 points.initial_volume(p) *
-                                 points.material(p).stiffness() / cell.extent;
-            for (unsigned int n = 0; n < Footprints<dim>::n_nodes; ++n)
-              if (footprints.touches(e, n))
-                for (unsigned int c = 0; c < dim; ++c)
-                  forces.local_element(dim * cell.nodes[n] + c) += force;
-          }
-      forces.compress(VectorOperation::add);
-      discretization.condense_hanging(forces);
-      return forces;
+             Utilities::MPI::min(volume, points.communicator);
     }
   } // namespace
 
@@ -84,25 +53,37 @@ namespace impm
         group_of_body.push_back(is_by_body ? n_deformable : 0);
         n_deformable += !body.rigid;
       }
-    const unsigned int  n = is_by_body ? n_deformable : 1;
-    std::vector<Vector> forces;
-    for (unsigned int g = 0; g < n; ++g)
-      {
-        forces.push_back(forces_at_unit_strain(
-          points, footprints, discretization, group_of_body, g));
-        stiffness.push_back(forces.back().l2_norm());
-      }
+    std::vector<Vector> forces(is_by_body ? n_deformable : 1);
+    for (Vector &force : forces)
+      discretization.initialize(force);
+    for (const auto &cell : footprints.cells)
+      for (unsigned int e = cell.begin; e < cell.end; ++e)
+        {
+          const unsigned int p     = footprints.point[e];
+          Vector            &force = forces[group_of_body[points.body(p)]];
+          const double share = footprints.weight[e] * points.initial_volume(p) *
+                               points.material(p).stiffness() / cell.extent;
+          for (unsigned int n = 0; n < Footprints<dim>::n_nodes; ++n)
+            if (footprints.touches(e, n))
+              for (unsigned int c = 0; c < dim; ++c)
+                force.local_element(dim * cell.nodes[n] + c) += share;
+        }
     discretization.initialize(unit_strain_forces);
-    for (const auto &force : forces)
-      unit_strain_forces += force;
+    for (Vector &force : forces)
+      {
+        force.compress(VectorOperation::add);
+        discretization.condense_hanging(force);
+        stiffness.push_back(force.l2_norm());
+        unit_strain_forces += force;
+      }
     unit_strain_forces.update_ghost_values();
 
     units = stiffness;
     if (scale == ResidualScale::cell)
-      units = {force_of_cell(bodies, points, footprints, communicator)};
+      units = {force_of_cell(bodies, points, footprints)};
     else if (scale == ResidualScale::momentum)
       units = {1 / dt};
-    if (n > 1)
+    if (forces.size() > 1)
       find_neighbors(forces);
   }
 

@@ -49,7 +49,6 @@ namespace impm
         batch.history[n]       = fields + points.offset_history;
         batch.trial_history[n] = histories.data() + p * points.history_size();
         batch.increment[n]     = increment(p);
-        batch.total[n]         = batch.increment[n] * batch.start[n];
       }
     batch.size = n;
     if (is_plane_stress)
@@ -71,6 +70,8 @@ namespace impm
           }
         return true;
       }
+    for (unsigned int i = 0; i < n; ++i)
+      batch.total[i] = batch.increment[i] * batch.start[i];
     if (!batch.law->evaluate({n,
                               batch.increment.data(),
                               batch.total.data(),

@@ -52,8 +52,8 @@ namespace impm
     void
     add_diagonal(Vector &diagonal) const
     {
-      for (unsigned int i = 0; i < weight.locally_owned_size(); ++i)
-        diagonal.local_element(i) += factor * weight.local_element(i);
+      if (weight.size() > 0)
+        diagonal.add(factor, weight);
     }
 
     /** Squares of what is added up in n(u) (N^2), by groups of the norm. */

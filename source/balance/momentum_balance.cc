@@ -224,11 +224,9 @@ namespace impm
   std::unique_ptr<SparseMatrix>
   MomentumBalance<dim>::make_matrix() const
   {
-    auto matrix = std::make_unique<SparseMatrix>(
-      discretization.locally_owned_dofs(),
-      discretization.numbering->locally_relevant_dofs,
-      constraints.constraints,
-      discretization.communicator);
+    auto matrix =
+      std::make_unique<SparseMatrix>(*discretization.numbering->partitioner,
+                                     constraints.constraints);
     for (const auto &term : parts.strain_terms)
       term->add_matrix(true,
                        [&](const unsigned int *begin,
@@ -244,10 +242,7 @@ namespace impm
     stiffness   = std::move(matrix);
     spread_mass = parts.smoothing->make_spread_mass();
     return std::make_unique<SparseMatrix>(
-      discretization.locally_owned_dofs(),
-      discretization.numbering->locally_relevant_dofs,
-      constraints.constraints,
-      discretization.communicator);
+      *discretization.numbering->partitioner, constraints.constraints);
   }
 
   template <int dim>
@@ -272,7 +267,7 @@ namespace impm
                          weighed *= parts.end_weight;
                          matrix.add_block(weighed, dofs);
                        });
-    matrix.end_adding();
+    matrix.compress(VectorOperation::add);
 
     // Rows that nothing has touched. A free one, without any stiffness, needs
     // a place for its inertia: products leave out what is zero.
@@ -287,11 +282,11 @@ namespace impm
         if (matrix.diagonal(dof) != 0)
           continue;
         if (constraints.is_constrained[i])
-          matrix.add(dof, dof, largest);
+          matrix.add_to_diagonal(dof, largest);
         else if (parts.smoothing)
-          matrix.add(dof, dof, std::numeric_limits<double>::min());
+          matrix.add_to_diagonal(dof, std::numeric_limits<double>::min());
       }
-    matrix.end_adding();
+    matrix.compress(VectorOperation::add);
   }
 
   template <int dim>
@@ -311,9 +306,9 @@ namespace impm
       if (!constraints.is_constrained[i] && work.local_element(i) > 0)
         {
           const auto dof = partitioner.local_to_global(i);
-          matrix.add(dof, dof, work.local_element(i));
+          matrix.add_to_diagonal(dof, work.local_element(i));
         }
-    matrix.end_adding();
+    matrix.compress(VectorOperation::add);
   }
 
   template <int dim>

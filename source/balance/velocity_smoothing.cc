@@ -120,11 +120,9 @@ namespace impm
   VelocitySmoothing<dim>::make_spread_mass() const
   {
     // Components do not mix.
-    auto matrix = std::make_unique<SparseMatrix>(
-      discretization.locally_owned_dofs(),
-      discretization.numbering->locally_relevant_dofs,
-      constraints.constraints,
-      discretization.communicator);
+    auto matrix =
+      std::make_unique<SparseMatrix>(*discretization.numbering->partitioner,
+                                     constraints.constraints);
     for (const auto &patch : footprints.patches)
       for (unsigned int c = 0; c < dim; ++c)
         matrix->add_to_pattern(dofs(patch, c));
@@ -137,7 +135,7 @@ namespace impm
         for (unsigned int c = 0; c < dim; ++c)
           matrix->add_block(local, dofs(patch, c));
       }
-    matrix->end_adding();
+    matrix->compress(VectorOperation::add);
 
     // Identity where constrained, whatever condensing has left there.
     const auto &partitioner = *discretization.numbering->partitioner;
@@ -145,9 +143,9 @@ namespace impm
       if (constraints.is_constrained[i])
         {
           const auto dof = partitioner.local_to_global(i);
-          matrix->set(dof, dof, 1.);
+          matrix->set_diagonal(dof, 1.);
         }
-    matrix->end_setting();
+    matrix->compress(VectorOperation::insert);
     return matrix;
   }
 

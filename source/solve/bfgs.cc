@@ -11,9 +11,9 @@ namespace impm
   }
 
   void
-  Bfgs::apply(Vector &dst, const Vector &src, const Solve &solve) const
+  Bfgs::apply(Vector &dst, const Vector &src, const VectorMap &solve) const
   {
-    work = src;
+    Vector              work = src;
     std::vector<double> factors(pairs.size());
     for (unsigned int i = pairs.size(); i-- > 0;)
       {

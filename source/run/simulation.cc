@@ -26,8 +26,7 @@ namespace impm
                               std::unique_ptr<GridPolicy<dim>> other_policy)
     : scene(the_scene)
     , communicator(communicator)
-    , silence(std::cout, false)
-    , timer(silence, TimerOutput::never, TimerOutput::wall_times)
+    , timer(std::cout, TimerOutput::never, TimerOutput::wall_times)
     , grid(scene.grid, communicator)
     , points(choose_layout(scene),
              *scene.history,
@@ -140,10 +139,8 @@ namespace impm
   void
   Simulation<dim>::advance()
   {
-    const auto step      = report.step + 1;
-    const auto fallbacks = counts.solver_fallbacks;
-    report               = StepReport();
-    report.step          = step;
+    report      = StepReport();
+    report.step = total.step + 1;
     adapt();
     for (double dt = control.begin(time, step_unit());;)
       {
@@ -173,7 +170,7 @@ namespace impm
             throw ComputationError(where.str());
           }
       }
-    report.solver_fallbacks = counts.solver_fallbacks - fallbacks;
+    report.solver_fallbacks = counts.solver_fallbacks - total.solver_fallbacks;
     report.held_cells       = problem->n_held_cells;
     report.limited_boxes    = problem->n_limited_boxes;
     report.active_cells =
@@ -187,17 +184,10 @@ namespace impm
     history.take_reactions(*problem, forces);
     watch_faces();
     commit();
-    ++n_steps;
     control.accept();
     report.time         = time;
     report.wall_seconds = wall.wall_time();
-
-    sums.newton += report.newton_iterations;
-    sums.linear += report.linear_iterations;
-    sums.line_searches += report.line_searches;
-    sums.cuts += report.step_cuts;
-    sums.projections += report.projections;
-    sums.noise_stops += report.noise_stops;
+    total.append(report);
   }
 
   template <int dim>
@@ -231,7 +221,7 @@ namespace impm
     console.finish();
     picture(false);
     write_checkpoint(directory,
-                     {n_steps, time, control.step_size(), reason},
+                     {total.step, time, control.step_size(), reason},
                      grid,
                      points);
   }
@@ -248,16 +238,16 @@ namespace impm
     summary.dim             = dim;
     summary.points          = points.sorted.n_global();
     summary.bytes_per_point = points.bytes_per_point();
-    summary.steps           = n_steps;
+    summary.steps           = total.step;
     summary.time            = time;
-    summary.counts          = {{"newton_iterations", sums.newton},
-                               {"linear_iterations", sums.linear},
-                               {"line_searches", sums.line_searches},
-                               {"step_cuts", sums.cuts},
+    summary.counts          = {{"newton_iterations", total.newton_iterations},
+                               {"linear_iterations", total.linear_iterations},
+                               {"line_searches", total.line_searches},
+                               {"step_cuts", total.step_cuts},
                                {"tangents", counts.tangents},
-                               {"tangent_projections", sums.projections},
+                               {"tangent_projections", total.projections},
                                {"solver_fallbacks", counts.solver_fallbacks},
-                               {"noise_stops", sums.noise_stops},
+                               {"noise_stops", total.noise_stops},
                                {"stress_evaluations",
                                 Utilities::MPI::sum(counts.stress_evaluations,
                                            communicator)},
@@ -283,10 +273,8 @@ namespace impm
     if (!integrator->has_inertia())
       return;
     // Of the highest mode of a grid of full cells, eq. 2.4.1.
-    const double unit  = cfl_unit();
-    const double limit = integrator->stable_step(2 / unit);
-    const double dt =
-      scene.time.largest_step * (scene.time.cfl_number > 0 ? unit : 1.);
+    const double limit = integrator->stable_step(2 / cfl_unit());
+    const double dt    = scene.time.largest_step * step_unit();
     if (dt <= 1.001 * limit)
       return;
     std::ostringstream text;
@@ -361,10 +349,11 @@ namespace impm
     warn_of_instability();
     if (scene.output.pictures)
       picture(false);
-    next_picture       = scene.output.picture_interval;
-    const auto is_over = [&]() {
+    const double interval     = scene.output.picture_interval;
+    double       next_picture = interval;
+    const auto   is_over      = [&]() {
       return time >= scene.time.end * (1 - 1e-12) ||
-             report.step >= scene.time.largest_number_of_steps;
+             total.step >= scene.time.largest_number_of_steps;
     };
     StepReport since_row;
     try
@@ -379,15 +368,14 @@ namespace impm
                 write_row(since_row);
                 since_row = StepReport();
               }
-            const bool due = scene.output.picture_interval > 0 ?
+            const bool due = interval > 0 ?
                                time >= next_picture * (1 - 1e-9) :
                                report.step % scene.output.picture_steps == 0;
             if (scene.output.pictures && (due || last))
               {
                 picture(true);
                 // A long step may have passed several.
-                if (const double interval = scene.output.picture_interval;
-                    interval > 0)
+                if (interval > 0)
                   next_picture =
                     interval * (std::floor(time / interval * (1 + 1e-9)) + 1);
               }

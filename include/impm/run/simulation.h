@@ -1,7 +1,6 @@
 #ifndef impm_run_simulation_h
 #define impm_run_simulation_h
 
-#include <deal.II/base/conditional_ostream.h>
 #include <deal.II/base/timer.h>
 
 #include <impm/app/command_line.h>
@@ -67,13 +66,13 @@ namespace impm
     void
     commit();
 
+    /** The time step (s) of a CFL number of one. Collective. */
+    double
+    cfl_unit() const;
+
     /** What time steps are counted in (s): a CFL number of one, or 1. */
     double
     step_unit() const;
-
-    /** That of a CFL number of one. */
-    double
-    cfl_unit() const;
 
     /** Warns of steps beyond what the integrator is stable in. */
     void
@@ -102,10 +101,9 @@ namespace impm
                   const std::string &status,
                   const FinerRuns   &finer_runs);
 
-    const Scene<dim>           scene;
-    const MPI_Comm             communicator;
-    dealii::ConditionalOStream silence;
-    dealii::TimerOutput        timer;
+    const Scene<dim>    scene;
+    const MPI_Comm      communicator;
+    dealii::TimerOutput timer;
 
     // What outlives a step.
     BackgroundGrid<dim>                    grid;
@@ -127,17 +125,11 @@ namespace impm
     Reference<dim>            reference;
     Console                   console;
     Warnings                  warnings;
-    unsigned int              n_steps = 0;  ///< completed
     std::array<bool, 2 * dim> face_holds{}; ///< material, in the last step
     dealii::Timer             wall;
     std::string               directory;
-    double                    next_picture = 0;
-    StepReport                report;
-    struct
-    {
-      unsigned long newton = 0, linear = 0, line_searches = 0, cuts = 0,
-                    projections = 0, noise_stops = 0;
-    } sums;
+    StepReport                report; ///< of the step that is being made
+    StepReport                total;  ///< of all that are completed
   };
 } // namespace impm
 

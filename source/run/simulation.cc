@@ -100,7 +100,7 @@ namespace impm
   }
 
   template <int dim>
-  NewtonSolver::Result
+  std::string
   Simulation<dim>::attempt(const double dt)
   {
     report.dt = dt;
@@ -110,7 +110,8 @@ namespace impm
       problem = std::make_unique<StepProblem<dim>>(
         scene, grid, points, rigid, *integrator, *builder, counts, time, dt);
     }
-    auto solution = solve_step(*problem, scene.solver, timer, result.increment);
+    const auto solution =
+      solve_step(*problem, scene.solver, timer, result.increment);
     report.newton_iterations += solution.iterations;
     report.linear_iterations += solution.linear_iterations;
     report.line_searches += solution.line_searches;
@@ -126,13 +127,10 @@ namespace impm
                        " /" + std::to_string(1 / solution.step_lengths[i]) :
                        "");
     console.detail("  residuals:" + iterations.str());
-    if (solution.converged)
-      {
-        solution.failure =
-          forbidden_motion(*problem, result.increment, grid, points, *policy);
-        solution.converged = solution.failure.empty();
-      }
-    return solution;
+    return solution.converged ?
+             forbidden_motion(
+               *problem, result.increment, grid, points, *policy) :
+             solution.failure;
   }
 
   template <int dim>
@@ -144,28 +142,27 @@ namespace impm
     adapt();
     for (double dt = control.begin(time, step_unit());;)
       {
-        const auto solution = attempt(dt);
+        const std::string failure = attempt(dt);
+        const bool        failed  = !failure.empty();
         // Nodes must not pass into a rigid body: the first one lands on it.
         const double part =
-          solution.converged ?
-            rigid.first_touch(result.increment,
-                              problem->constraints.is_constrained,
-                              time,
-                              time + dt) :
-            0.5;
-        if (solution.converged && part == 1)
+          failed ? 0.5 :
+                   rigid.first_touch(result.increment,
+                                     problem->constraints.is_constrained,
+                                     time,
+                                     time + dt);
+        if (part == 1)
           break;
         ++report.step_cuts;
         console.detail("  step cut at t = " + std::to_string(time) +
                        ", dt = " + std::to_string(dt) + ": " +
-                       (solution.converged ? "a node reaches a rigid body" :
-                                             solution.failure));
-        dt = control.cut(part, !solution.converged);
-        if (!solution.converged && control.is_too_short())
+                       (failed ? failure : "a node reaches a rigid body"));
+        dt = control.cut(part, failed);
+        if (failed && control.is_too_short())
           {
             std::ostringstream where;
             where << "at t = " << time << " s, step " << report.step << ": "
-                  << solution.failure << ", and dt = " << dt
+                  << failure << ", and dt = " << dt
                   << " s is below the smallest time step";
             throw ComputationError(where.str());
           }

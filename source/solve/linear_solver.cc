@@ -11,21 +11,6 @@ namespace impm
 {
   using namespace dealii;
 
-  namespace
-  {
-    /** A map as deal.II's solvers want it. */
-    struct Operator
-    {
-      const VectorMap &apply;
-
-      void
-      vmult(Vector &dst, const Vector &src) const
-      {
-        apply(dst, src);
-      }
-    };
-  } // namespace
-
   LinearSolver::LinearSolver(const SolverSpec &spec,
                              NonlinearSystem  &system,
                              TimerOutput      &timer)
@@ -33,6 +18,9 @@ namespace impm
     , system(system)
     , timer(timer)
     , quotient(system, spec.difference_step)
+    , needs_matrix(spec.linear_solver == LinearSolverKind::direct ||
+                   spec.tangent == TangentKind::matrix ||
+                   spec.preconditioner == PreconditionerKind::amg)
   {
     system.initialize(inverse_diagonal);
   }
@@ -67,18 +55,14 @@ namespace impm
       }
     TimerOutput::Scope scope(timer, "assembly");
     system.assemble(*matrix);
-    matrix_is_current = true;
   }
 
   void
   LinearSolver::take_tangent()
   {
     ++system.counts->tangents;
-    matrix_is_current = false;
-    preconditioner = solve_directly = nullptr;
-    if (spec.linear_solver == LinearSolverKind::direct ||
-        spec.tangent == TangentKind::matrix ||
-        spec.preconditioner == PreconditionerKind::amg)
+    preconditioner = inverse = {};
+    if (needs_matrix)
       assemble();
     if (spec.linear_solver == LinearSolverKind::direct)
       return;
@@ -99,7 +83,7 @@ namespace impm
     for (unsigned int i = 0; i < inverse_diagonal.locally_owned_size(); ++i)
       inverse_diagonal.local_element(i) =
         system.is_constrained(i) ? 1. : 1 / inverse_diagonal.local_element(i);
-    preconditioner = [this](Vector &dst, const Vector &src) {
+    preconditioner.vmult = [this](Vector &dst, const Vector &src) {
       dst = src;
       dst.scale(inverse_diagonal);
     };
@@ -112,7 +96,8 @@ namespace impm
     SolverControl          strict(spec.linear_iterations, goal);
     IterationNumberControl lenient(spec.linear_iterations, goal);
     SolverControl         &control = spec.accept_unfinished ? lenient : strict;
-    const VectorMap        tangent = [&](Vector &dst, const Vector &src) {
+    LinearMap              tangent;
+    tangent.vmult = [&](Vector &dst, const Vector &src) {
       if (spec.tangent == TangentKind::difference_quotient)
         quotient.vmult(dst, src);
       else if (spec.tangent == TangentKind::matrix_free)
@@ -124,10 +109,10 @@ namespace impm
         }
     };
     const auto run = [&](auto &&solver) {
-      if (preconditioner)
-        solver.solve(Operator{tangent}, x, b, Operator{preconditioner});
+      if (preconditioner.vmult)
+        solver.solve(tangent, x, b, preconditioner);
       else
-        solver.solve(Operator{tangent}, x, b, PreconditionIdentity());
+        solver.solve(tangent, x, b, PreconditionIdentity());
     };
     if (spec.linear_solver == LinearSolverKind::cg)
       run(SolverCG<Vector>(control));
@@ -160,12 +145,12 @@ namespace impm
           x = 0;
         }
     // What has been factorized must stay: a tangent may be solved with again.
-    if (!matrix_is_current)
+    if (!needs_matrix && !inverse.vmult)
       assemble();
     TimerOutput::Scope scope(timer, "direct solver");
-    if (!solve_directly)
-      solve_directly = factorize(*matrix);
-    solve_directly(x, b);
+    if (!inverse.vmult)
+      inverse = factorize(*matrix);
+    inverse.vmult(x, b);
     return is_direct ? 1 : spec.linear_iterations;
   }
 } // namespace impm

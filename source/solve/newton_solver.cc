@@ -175,11 +175,12 @@ namespace impm
     if (!has_tangent || bfgs.n_updates() >= spec.bfgs_updates)
       take_tangent(u);
     right_side.equ(-1., system.residual());
-    const auto answer = [&]() {
-      bfgs.apply(step, right_side, [&](Vector &dst, const Vector &src) {
-        n_linear_iterations += linear_solver.solve(dst, src);
-        system.set_zero(dst);
-      });
+    const LinearMap inverse = {[&](Vector &dst, const Vector &src) {
+      n_linear_iterations += linear_solver.solve(dst, src);
+      system.set_zero(dst);
+    }};
+    const auto      answer  = [&]() {
+      bfgs.apply(step, right_side, inverse);
       return -system.work_along(step, right_side);
     };
     double slope = answer();

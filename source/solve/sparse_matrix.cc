@@ -132,7 +132,7 @@ namespace impm
     };
   } // namespace
 
-  VectorMap
+  LinearMap
   make_amg(const SparseMatrix                     &matrix,
            const std::vector<std::vector<double>> &modes)
   {
@@ -175,12 +175,12 @@ namespace impm
     if (Utilities::MPI::logical_or(failed,
                                    trilinos_matrix.get_mpi_communicator()))
       blame_matrix();
-    return [amg](Vector &dst, const Vector &src) {
+    return {[amg](Vector &dst, const Vector &src) {
       amg->preconditioner.vmult(dst, src);
-    };
+    }};
   }
 
-  VectorMap
+  LinearMap
   factorize(const SparseMatrix &matrix)
   {
     const auto factors = std::make_shared<Factors>();
@@ -192,7 +192,7 @@ namespace impm
       {
         blame_matrix();
       }
-    return [factors](Vector &x, const Vector &b) {
+    return {[factors](Vector &x, const Vector &b) {
       try
         {
           factors->solver.solve(x, b);
@@ -201,6 +201,6 @@ namespace impm
         {
           blame_matrix();
         }
-    };
+    }};
   }
 } // namespace impm

@@ -54,8 +54,9 @@ namespace impm
     void
     advance();
 
-    /** Prepares a step from points and grid as they are and solves it. */
-    NewtonSolver::Result
+    /** Prepares a step from points and grid as they are and solves it. Returns
+     * why the result must not be used; empty if it may. */
+    std::string
     attempt(double dt);
 
     /** Lets the policy change the cells. */

@@ -37,9 +37,9 @@ namespace impm
     void
     add(const Vector &change, const Vector &residual_change);
 
-    /** dst = the corrected inverse times src; `solve` is K_0^-1. Collective. */
+    /** dst = K_0^-1, corrected, times src. Collective. */
     void
-    apply(Vector &dst, const Vector &src, const VectorMap &solve) const;
+    apply(Vector &dst, const Vector &src, const LinearMap &inverse) const;
 
   private:
     struct Pair

@@ -56,11 +56,11 @@ namespace impm
     dealii::TimerOutput &timer;
     DifferenceQuotient   quotient;
 
+    const bool                    needs_matrix; ///< of every tangent
     std::unique_ptr<SparseMatrix> matrix;
-    bool                          matrix_is_current = false;
     Vector                        inverse_diagonal;
-    VectorMap preconditioner; ///< of the tangent, if it has any
-    VectorMap solve_directly; ///< with the matrix as it is, once factorized
+    LinearMap                     preconditioner; ///< if there is one
+    LinearMap inverse; ///< of the matrix as it is, once factorized
   };
 } // namespace impm
 

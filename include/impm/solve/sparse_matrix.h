@@ -75,8 +75,11 @@ namespace impm
     const dealii::AffineConstraints<double> &constraints;
   };
 
-  /** Writes what it makes of the second vector into the first. */
-  using VectorMap = std::function<void(Vector &, const Vector &)>;
+  /** What deal.II's solvers know of a matrix, a preconditioner, an inverse. */
+  struct LinearMap
+  {
+    std::function<void(Vector &dst, const Vector &src)> vmult;
+  };
 
   /**
    * Smoothed aggregation (ML) for elastic bodies, for a matrix that stays as it
@@ -84,15 +87,16 @@ namespace impm
    * Throws LinearizationError, on every rank alike, when the matrix is
    * singular. Collective.
    */
-  VectorMap
+  LinearMap
   make_amg(const SparseMatrix                     &matrix,
            const std::vector<std::vector<double>> &modes);
 
   /**
-   * Factorizes (Amesos, KLU) a matrix that stays as it is; the map solves. Both
-   * throw LinearizationError as make_amg() does. Collective.
+   * The inverse of a matrix that stays as it is, by factorization (Amesos,
+   * KLU). Throws LinearizationError as make_amg() does, when applied, too.
+   * Collective.
    */
-  VectorMap
+  LinearMap
   factorize(const SparseMatrix &matrix);
 } // namespace impm
 

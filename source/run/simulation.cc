@@ -5,7 +5,6 @@
 #include <impm/base/files.h>
 #include <impm/footprints/scatter.h>
 #include <impm/output/summary.h>
-#include <impm/run/checkpoint.h>
 #include <impm/run/motion_limits.h>
 #include <impm/run/simulation.h>
 #include <impm/scene/layout_choice.h>
@@ -209,18 +208,6 @@ namespace impm
     pictures.write(directory,
                    time,
                    grid_has_increment ? &result.increment : nullptr);
-  }
-
-  template <int dim>
-  void
-  Simulation<dim>::save_last_good_state(const std::string &reason)
-  {
-    console.finish();
-    picture(false);
-    write_checkpoint(directory,
-                     {total.step, time, control.step_size(), reason},
-                     grid,
-                     points);
   }
 
   template <int dim>

@@ -94,6 +94,11 @@ namespace impm
     void
     picture(bool grid_has_increment);
 
+    /**
+     * A picture, and points, grid and state in directory/checkpoint: in one of
+     * two places in turn, and the file last_good names the new one once it is
+     * complete.
+     */
     void
     save_last_good_state(const std::string &reason);
 

@@ -5,8 +5,7 @@
 #include <impm/input/parameter_listing.h>
 #include <impm/run/simulation.h>
 #include <impm/study/finer_run.h>
-#include <impm/study/study_process.h>
-#include <impm/study/study_runner.h>
+#include <impm/study/study.h>
 
 #include <algorithm>
 #include <filesystem>

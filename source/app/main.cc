@@ -37,16 +37,11 @@ namespace
     if (directory.empty())
       directory = "output/" + name;
 
-    Simulation<dim>        simulation(scene, line.verbosity, MPI_COMM_WORLD);
-    const FinerRunner<dim> finer(scene.references,
-                                 line,
-                                 directory,
-                                 MPI_COMM_WORLD);
+    Simulation<dim> simulation(scene, line.verbosity, MPI_COMM_WORLD);
     simulation.describe();
-    if (line.action == CommandLine::Action::check)
-      return;
-    const auto finer_runs = finer.run();
-    simulation.run(directory, name, file.resolved({"Study"}), finer_runs);
+    const auto finer_runs = make_finer_runs(scene.references, line, directory);
+    if (line.action != CommandLine::Action::check)
+      simulation.run(directory, name, file.resolved({"Study"}), finer_runs);
   }
 
   void

@@ -41,13 +41,8 @@ namespace impm
     , integrator(make_time_integrator(scene.time))
     , builder(make_footprint_builder(scene.grid))
     , pictures(scene.output, points, rigid, grid)
-    , history(scene.output, scene.faces, scene.bodies, points, rigid, grid)
-    , reference(scene.references,
-                scene.bodies,
-                scene.output,
-                scene.time,
-                points,
-                history)
+    , history(scene, points, rigid, grid)
+    , reference(scene, points, history)
     , console(verbosity, Utilities::MPI::this_mpi_process(communicator) == 0)
     , warnings(scene.warnings)
   {}

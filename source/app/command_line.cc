@@ -1,28 +1,24 @@
 #include <impm/app/command_line.h>
+#include <impm/app/version.h>
 #include <impm/base/exceptions.h>
+#include <impm/input/parameter_messages.h>
 
 namespace impm
 {
-  const char *
-  command_line_help()
-  {
-    return "usage: impm_dealii [options] FILE.prm\n"
-           "  --set \"Section/Sub/Name=value\"  override an entry (repeatable)\n"
-           "  --output DIR        where results go (default: the file's own "
-           "entry,\n"
-           "                      else output/<name of the prm>)\n"
-           "  --check             parse, validate, print the scene, its point "
-           "fields\n"
-           "                      and bytes per point; run nothing\n"
-           "  --study             run the file's Study section; with --check, "
-           "list its runs\n"
-           "  --print-parameters  every entry with default, range, unit and "
-           "meaning\n"
-           "  --quiet | --verbose\n"
-           "  --version, --help\n"
-           "Exit code: 0 done; 1 bad input; 2 the computation could not go on; "
-           "3 the\nsystem failed. Parallel: mpirun -np N impm_dealii ...\n";
-  }
+  const char *const help =
+    R"(usage: impm_dealii [options] FILE.prm
+  --set "Section/Sub/Name=value"  override an entry (repeatable)
+  --output DIR        where results go (default: the file's own entry,
+                      else output/<name of the prm>)
+  --check             parse, validate, print the scene, its point fields
+                      and bytes per point; run nothing
+  --study             run the file's Study section; with --check, list its runs
+  --print-parameters  every entry with default, range, unit and meaning
+  --quiet | --verbose
+  --version, --help
+Exit code: 0 done; 1 bad input; 2 the computation could not go on; 3 the
+system failed. Parallel: mpirun -np N impm_dealii ...
+)";
 
   CommandLine
   parse_command_line(const int argc, const char *const *argv)
@@ -41,13 +37,14 @@ namespace impm
         else if (word == "--output")
           line.output_directory = value();
         else if (word == "--check")
-          line.action = CommandLine::Action::check;
+          line.check = true;
         else if (word == "--print-parameters")
-          line.action = CommandLine::Action::print_parameters;
+          line.answer = parameter_listing();
         else if (word == "--version")
-          line.action = CommandLine::Action::print_version;
+          line.answer =
+            std::string("impm_dealii ") + version + ' ' + git_revision + '\n';
         else if (word == "--help" || word == "-h")
-          line.action = CommandLine::Action::print_help;
+          line.answer = help;
         else if (word == "--quiet")
           line.verbosity = CommandLine::Verbosity::quiet;
         else if (word == "--verbose")
@@ -65,9 +62,7 @@ namespace impm
                            "found a second parameter file '" + word +
                              "', allowed is one");
       }
-    const bool needs_file = line.action == CommandLine::Action::run ||
-                            line.action == CommandLine::Action::check;
-    if (needs_file && line.parameter_file.empty())
+    if (line.answer.empty() && line.parameter_file.empty())
       throw InputError("", "no parameter file; see --help");
     return line;
   }

@@ -9,12 +9,6 @@ namespace impm
 {
   using Verbosity = CommandLine::Verbosity;
 
-  Console::Console(const Verbosity verbosity, const bool is_first_rank)
-    : verbosity(verbosity)
-    , speaks(is_first_rank && verbosity != Verbosity::quiet)
-    , is_terminal(isatty(STDOUT_FILENO) == 1)
-  {}
-
   void
   Console::finish()
   {
@@ -27,7 +21,7 @@ namespace impm
   void
   Console::message(const std::string &text)
   {
-    if (!speaks)
+    if (verbosity == Verbosity::quiet)
       return;
     finish();
     std::printf("%s\n", text.c_str());
@@ -47,22 +41,16 @@ namespace impm
                 const unsigned long                                n_points,
                 const std::vector<std::pair<std::string, double>> &figures)
   {
-    if (!speaks)
+    if (verbosity == Verbosity::quiet)
       return;
     finish();
     if (!has_header)
       {
-        std::printf("%6s %12s %10s %6s %6s %9s %9s",
-                    "step",
-                    "time",
-                    "dt",
-                    "Newton",
-                    "Krylov",
-                    "residual",
-                    "points");
+        std::printf("  step         time         dt Newton Krylov"
+                    "  residual    points");
         for (const auto &figure : figures)
           std::printf(" %18s", figure.first.c_str());
-        std::printf(" %9s\n", "left");
+        std::printf("      left\n");
         has_header = true;
       }
     const double done = std::min(1., report.time / end_time);
@@ -81,14 +69,12 @@ namespace impm
                 left,
                 report.step_cuts > 0 ? "  step cut" : "",
                 report.noise_stops > 0 ? "  at round-off" : "");
-    if (is_terminal)
+    if (isatty(STDOUT_FILENO) == 1)
       {
         const unsigned int width = 50;
-        const unsigned int full  = static_cast<unsigned int>(width * done);
-        std::printf("[%s%s] %3.0f %%",
-                    std::string(full, '#').c_str(),
-                    std::string(width - full, '.').c_str(),
-                    100 * done);
+        std::string        bar(static_cast<unsigned int>(width * done), '#');
+        bar.resize(width, '.');
+        std::printf("[%s] %3.0f %%", bar.c_str(), 100 * done);
         has_bar = true;
       }
     std::fflush(stdout);

@@ -1,12 +1,10 @@
+#include <deal.II/base/conditional_ostream.h>
 #include <deal.II/base/mpi.h>
 
-#include <impm/app/version.h>
 #include <impm/base/exceptions.h>
-#include <impm/input/parameter_listing.h>
 #include <impm/run/simulation.h>
 #include <impm/study/finer_run.h>
-#include <impm/study/study_process.h>
-#include <impm/study/study_runner.h>
+#include <impm/study/study.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -38,39 +36,16 @@ namespace
     if (directory.empty())
       directory = "output/" + name;
 
-    Simulation<dim>        simulation(scene, line.verbosity, MPI_COMM_WORLD);
-    const FinerRunner<dim> finer(scene.references,
-                                 line,
-                                 directory,
-                                 MPI_COMM_WORLD);
+    Simulation<dim> simulation(scene, line.verbosity, MPI_COMM_WORLD);
     simulation.describe();
-    if (line.action == CommandLine::Action::check)
-      return;
-    const auto finer_runs = finer.run();
-    simulation.run(directory, name, file.resolved({"Study"}), finer_runs);
+    const auto finer_runs = make_finer_runs(scene.references, line, directory);
+    if (!line.check)
+      simulation.run(directory, name, file.resolved({"Study"}), finer_runs);
   }
 
   void
-  dispatch(const CommandLine &line, const bool first)
+  compute(const CommandLine &line)
   {
-    switch (line.action)
-      {
-        case CommandLine::Action::print_help:
-          if (first)
-            std::cout << command_line_help();
-          return;
-        case CommandLine::Action::print_version:
-          if (first)
-            std::cout << "impm_dealii " << version << ' ' << git_revision
-                      << '\n';
-          return;
-        case CommandLine::Action::print_parameters:
-          if (first)
-            print_parameter_listing(std::cout);
-          return;
-        default:
-          break;
-      }
     if (line.study && is_started_by_mpi())
       throw InputError("",
                        "--study under mpirun: it starts its own processes; "
@@ -87,12 +62,7 @@ namespace
       }
     catch (const InputError &error)
       {
-        // Say where the entry stands.
-        if (error.entry.empty())
-          throw;
-        throw InputError("",
-                         file.locate(error.entry) + ": entry '" + error.entry +
-                           "': " + error.what());
+        throw InputError("", file.describe(error));
       }
   }
 } // namespace
@@ -108,10 +78,7 @@ main(int argc, char **argv)
     mpi.emplace(argc, argv, 1);
   const bool first =
     !mpi || dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
-  const auto say = [&](const std::string &what, const std::string &why) {
-    if (first)
-      std::cerr << "impm_dealii: " << what << why << std::endl;
-  };
+  dealii::ConditionalOStream errors(std::cerr, first);
   // A failure of one rank alone would leave the others waiting.
   const auto fail_alone = [&](const std::string &why) {
     std::cerr << "impm_dealii: system failure: " << why << std::endl;
@@ -121,16 +88,21 @@ main(int argc, char **argv)
   };
   try
     {
-      dispatch(parse_command_line(argc, argv), first);
+      const CommandLine line = parse_command_line(argc, argv);
+      if (line.answer.empty())
+        compute(line);
+      else if (first)
+        std::cout << line.answer;
     }
   catch (const InputError &error)
     {
-      say("bad input: ", error.what());
+      errors << "impm_dealii: bad input: " << error.what() << std::endl;
       return 1;
     }
   catch (const ComputationError &error)
     {
-      say("the computation cannot go on: ", error.what());
+      errors << "impm_dealii: the computation cannot go on: " << error.what()
+             << std::endl;
       return 2;
     }
   catch (const dealii::ExceptionBase &error)

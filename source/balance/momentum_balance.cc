@@ -2,24 +2,21 @@
 
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace impm
 {
   using namespace dealii;
 
   template <int dim>
-  MomentumBalance<dim>::MomentumBalance(
-    const Discretization<dim>  &discretization,
-    const StepConstraints<dim> &constraints,
-    Parts                       the_parts,
-    WorkCounts                 &work_counts)
-    : discretization(discretization)
-    , constraints(constraints)
-    , parts(std::move(the_parts))
+  void
+  MomentumBalance<dim>::add_forces_of_strain(const Vector &strain_u,
+                                             Vector       &result) const
   {
-    counts = &work_counts;
-    for (Vector *vector : {&forces, &free_residual, &work, &smooth})
-      initialize(*vector);
+    for (const Term *term : parts.strain_terms)
+      term->add_force(strain_u, result);
+    result.compress(VectorOperation::add);
+    parts.discretization.condense_hanging(result);
   }
 
   template <int dim>
@@ -28,12 +25,7 @@ namespace impm
   {
     Vector result;
     initialize(result);
-    if (parts.smoothing)
-      parts.smoothing->apply(u, parts.start_increment, smooth);
-    for (const auto &term : parts.strain_terms)
-      term->add_force(parts.smoothing ? smooth : u, result);
-    result.compress(VectorOperation::add);
-    discretization.condense_hanging(result);
+    add_forces_of_strain(strain_increment(u), result);
     return result;
   }
 
@@ -43,13 +35,11 @@ namespace impm
   {
     Evaluation result;
     u.update_ghost_values();
-    if (parts.smoothing)
-      parts.smoothing->apply(u, parts.start_increment, smooth);
-    const Vector &strain_u = parts.smoothing ? smooth : u;
-    bool          fine     = true;
-    for (const auto &term : parts.strain_terms)
+    const Vector  &strain_u     = strain_increment(u);
+    const MPI_Comm communicator = parts.discretization.communicator;
+    bool           fine         = true;
+    for (Term *term : parts.strain_terms)
       fine = term->evaluate(strain_u, with_tangent) && fine;
-    const MPI_Comm communicator = discretization.communicator;
     if (Utilities::MPI::min(fine ? 1 : 0, communicator) == 0)
       return result;
 
@@ -58,35 +48,39 @@ namespace impm
     forces                 = 0;
     if (weight > 0)
       {
-        for (const auto &term : parts.strain_terms)
-          {
-            term->add_force(strain_u, forces);
-            potential += weight * term->energy(strain_u);
-          }
-        forces.compress(VectorOperation::add);
-        discretization.condense_hanging(forces);
+        add_forces_of_strain(strain_u, forces);
+        for (const Term *term : parts.strain_terms)
+          potential += weight * term->energy(strain_u, strain_u);
       }
-    const auto strain_forces = parts.norm->squares(forces);
+    const auto strain_forces = parts.norm.squares(forces);
     if (weight < 1)
       {
         forces.sadd(weight, 1 - weight, parts.start_forces);
-        for (unsigned int i = 0; i < forces.locally_owned_size(); ++i)
-          potential += (1 - weight) * parts.start_forces.local_element(i) *
-                       strain_u.local_element(i);
+        potential +=
+          (1 - weight) * std::inner_product(parts.start_forces.begin(),
+                                            parts.start_forces.end(),
+                                            strain_u.begin(),
+                                            0.);
       }
-    for (const auto &term : parts.node_terms)
+    const Vector *felt = &u;
+    if (parts.smoothing)
+      {
+        work = u;
+        parts.constraints.set_zero(work);
+        felt = &strain_direction();
+      }
+    for (const Term *term : parts.node_terms)
       {
         term->add_force(u, forces);
-        potential += term->energy(u);
+        potential += term->energy(u, *felt);
       }
 
     free_residual = forces;
-    constraints.set_zero(free_residual);
-    result.admissible = true;
-    result.potential  = Utilities::MPI::sum(potential, communicator);
+    parts.constraints.set_zero(free_residual);
+    result.potential = Utilities::MPI::sum(potential, communicator);
     judge(u, strain_forces, result);
-    if (!std::isfinite(result.residual) || !std::isfinite(result.potential))
-      result.admissible = false;
+    result.admissible =
+      std::isfinite(result.residual) && std::isfinite(result.potential);
     return result;
   }
 
@@ -96,21 +90,17 @@ namespace impm
                               const std::vector<double> &strain_forces,
                               Evaluation                &result) const
   {
-    const auto         &norm   = *parts.norm;
+    const auto         &norm   = parts.norm;
     const unsigned int  n      = norm.n_groups();
     std::vector<double> sums   = norm.squares(free_residual);
     const auto          append = [&](const std::vector<double> &more) {
       sums.insert(sums.end(), more.begin(), more.end());
     };
     append(strain_forces);
-    for (const Terms *terms : {&parts.strain_terms, &parts.node_terms})
-      for (const auto &term : *terms)
-        {
-          std::vector<double> squares(n);
-          term->add_squares_of_parts(u, norm, squares);
-          append(squares);
-        }
-    Utilities::MPI::sum(sums, discretization.communicator, sums);
+    for (const auto &terms : {parts.strain_terms, parts.node_terms})
+      for (const Term *term : terms)
+        append(term->squares_of_parts(u, norm));
+    Utilities::MPI::sum(sums, parts.discretization.communicator, sums);
     for (double &sum : sums)
       sum = std::sqrt(sum);
 
@@ -118,8 +108,7 @@ namespace impm
     // near one and differences of u have errors of their own, however small
     // the stress is that comes of them.
     const double strain =
-      parts.end_weight *
-      (1 + u.linfty_norm() / discretization.smallest_cell_extent);
+      parts.end_weight * (1 + u.linfty_norm() / length_scale());
     const auto at_work = norm.largest_nearby(
       std::vector<double>(sums.begin() + n, sums.begin() + 2 * n));
     result.parts.resize(n);
@@ -153,27 +142,18 @@ namespace impm
 
   template <int dim>
   void
-  MomentumBalance<dim>::project_tangent()
-  {
-    for (const auto &term : parts.strain_terms)
-      term->project_tangent();
-  }
-
-  template <int dim>
-  void
-  MomentumBalance<dim>::apply_tangent(Vector       &dst,
-                                      const Vector &strain_src,
-                                      const Vector &src) const
+  MomentumBalance<dim>::apply_tangent(Vector &dst) const
   {
     ++counts->operator_applications;
-    dst = 0;
-    for (const auto &term : parts.strain_terms)
+    const Vector &strain_src = strain_direction();
+    dst                      = 0;
+    for (const Term *term : parts.strain_terms)
       term->apply(strain_src, dst);
     dst.compress(VectorOperation::add);
-    discretization.condense_hanging(dst);
+    parts.discretization.condense_hanging(dst);
     dst *= parts.end_weight;
-    for (const auto &term : parts.node_terms)
-      term->apply(src, dst);
+    for (const Term *term : parts.node_terms)
+      term->apply(work, dst);
   }
 
   template <int dim>
@@ -181,13 +161,10 @@ namespace impm
   MomentumBalance<dim>::vmult(Vector &dst, const Vector &src) const
   {
     work = src;
-    constraints.set_zero(work);
-    interpolate_hanging(work);
-    if (parts.smoothing)
-      parts.smoothing->apply_derivative(work, smooth);
-    apply_tangent(dst, parts.smoothing ? smooth : work, work);
+    parts.constraints.set_zero(work);
+    apply_tangent(dst);
     for (unsigned int i = 0; i < dst.locally_owned_size(); ++i)
-      if (constraints.is_constrained[i])
+      if (is_constrained(i))
         dst.local_element(i) = src.local_element(i);
   }
 
@@ -196,11 +173,8 @@ namespace impm
   MomentumBalance<dim>::vmult_lift(Vector &dst, const Vector &src) const
   {
     work = src;
-    interpolate_hanging(work);
-    if (parts.smoothing)
-      parts.smoothing->apply_derivative(work, smooth);
-    apply_tangent(dst, parts.smoothing ? smooth : work, work);
-    constraints.set_zero(dst);
+    apply_tangent(dst);
+    parts.constraints.set_zero(dst);
   }
 
   template <int dim>
@@ -208,15 +182,15 @@ namespace impm
   MomentumBalance<dim>::diagonal(Vector &diagonal) const
   {
     diagonal = 0;
-    for (const auto &term : parts.strain_terms)
+    for (const Term *term : parts.strain_terms)
       term->add_diagonal(diagonal);
     diagonal.compress(VectorOperation::add);
-    discretization.condense_hanging(diagonal);
+    parts.discretization.condense_hanging(diagonal);
     diagonal *= parts.end_weight;
-    for (const auto &term : parts.node_terms)
+    for (const Term *term : parts.node_terms)
       term->add_diagonal(diagonal);
     for (unsigned int i = 0; i < diagonal.locally_owned_size(); ++i)
-      if (constraints.is_constrained[i])
+      if (is_constrained(i))
         diagonal.local_element(i) = 1;
   }
 
@@ -224,96 +198,69 @@ namespace impm
   std::unique_ptr<SparseMatrix>
   MomentumBalance<dim>::make_matrix() const
   {
-    auto matrix = std::make_unique<SparseMatrix>(
-      discretization.locally_owned_dofs(),
-      discretization.numbering->locally_relevant_dofs,
-      constraints.constraints,
-      discretization.communicator);
-    for (const auto &term : parts.strain_terms)
-      term->add_matrix(true,
-                       [&](const unsigned int *begin,
-                           const unsigned int *end,
-                           const FullMatrix<double> &) {
-                         matrix->add_to_pattern(
-                           discretization.dofs_of_nodes(begin, end));
-                       });
+    auto matrix = empty_matrix();
+    for (const Term *term : parts.strain_terms)
+      term->add_matrix(true, [&](const auto &nodes, const auto &) {
+        matrix->add_to_pattern(
+          parts.discretization.dofs_of_nodes(nodes.begin(), nodes.end()));
+      });
     matrix->end_pattern();
     if (!parts.smoothing)
       return matrix;
     // What is asked for is a product.
     stiffness   = std::move(matrix);
-    spread_mass = parts.smoothing->make_spread_mass();
-    return std::make_unique<SparseMatrix>(
-      discretization.locally_owned_dofs(),
-      discretization.numbering->locally_relevant_dofs,
-      constraints.constraints,
-      discretization.communicator);
-  }
-
-  template <int dim>
-  void
-  MomentumBalance<dim>::assemble_stiffness(SparseMatrix &matrix) const
-  {
-    matrix.set_zero();
-    FullMatrix<double> weighed;
-    for (const auto &term : parts.strain_terms)
-      term->add_matrix(false,
-                       [&](const unsigned int       *begin,
-                           const unsigned int       *end,
-                           const FullMatrix<double> &block) {
-                         const auto dofs =
-                           discretization.dofs_of_nodes(begin, end);
-                         if (parts.end_weight == 1)
-                           {
-                             matrix.add_block(block, dofs);
-                             return;
-                           }
-                         weighed = block;
-                         weighed *= parts.end_weight;
-                         matrix.add_block(weighed, dofs);
-                       });
-    matrix.end_adding();
-
-    // Rows that nothing has touched. A free one, without any stiffness, needs
-    // a place for its inertia: products leave out what is zero.
-    const auto &partitioner = *discretization.numbering->partitioner;
-    double      largest     = 0;
-    for (const auto dof : discretization.locally_owned_dofs())
-      largest = std::max(largest, matrix.diagonal(dof));
-    largest = Utilities::MPI::max(largest, discretization.communicator);
-    for (unsigned int i = 0; i < partitioner.locally_owned_size(); ++i)
-      {
-        const auto dof = partitioner.local_to_global(i);
-        if (matrix.diagonal(dof) != 0)
-          continue;
-        if (constraints.is_constrained[i])
-          matrix.add(dof, dof, largest);
-        else if (parts.smoothing)
-          matrix.add(dof, dof, std::numeric_limits<double>::min());
-      }
-    matrix.end_adding();
+    spread_mass = empty_matrix();
+    parts.smoothing->fill_spread_mass(*spread_mass);
+    return empty_matrix();
   }
 
   template <int dim>
   void
   MomentumBalance<dim>::assemble(SparseMatrix &matrix) const
   {
-    assemble_stiffness(parts.smoothing ? *stiffness : matrix);
-    if (parts.smoothing)
-      matrix.multiply(*stiffness, parts.smoothing->scaling(), *spread_mass);
-    if (parts.node_terms.empty())
-      return;
-    work = 0;
-    for (const auto &term : parts.node_terms)
-      term->add_diagonal(work);
+    const auto   &discretization = parts.discretization;
+    SparseMatrix &K              = parts.smoothing ? *stiffness : matrix;
+    K.set_zero();
+    for (const Term *term : parts.strain_terms)
+      term->add_matrix(false, [&](const auto &nodes, auto &block) {
+        if (parts.end_weight != 1)
+          block *= parts.end_weight;
+        K.add_block(block,
+                    discretization.dofs_of_nodes(nodes.begin(), nodes.end()));
+      });
+    K.compress(VectorOperation::add);
+
+    // Rows that nothing has touched. A free one, without any stiffness, needs
+    // a place for its inertia: products leave out what is zero.
     const auto &partitioner = *discretization.numbering->partitioner;
+    double      largest     = 0;
+    for (const auto dof : discretization.locally_owned_dofs())
+      largest = std::max(largest, K.diagonal(dof));
+    largest = Utilities::MPI::max(largest, discretization.communicator);
+    for (unsigned int i = 0; i < partitioner.locally_owned_size(); ++i)
+      {
+        const auto dof = partitioner.local_to_global(i);
+        if (K.diagonal(dof) != 0)
+          continue;
+        if (is_constrained(i))
+          K.add_to_diagonal(dof, largest);
+        else if (parts.smoothing)
+          K.add_to_diagonal(dof, std::numeric_limits<double>::min());
+      }
+    K.compress(VectorOperation::add);
+
+    if (parts.smoothing)
+      matrix.multiply(K, parts.smoothing->scaling, *spread_mass);
+    work = 0;
+    for (const Term *term : parts.node_terms)
+      term->add_diagonal(work);
     for (unsigned int i = 0; i < work.locally_owned_size(); ++i)
-      if (!constraints.is_constrained[i] && work.local_element(i) > 0)
+      if (!is_constrained(i) && work.local_element(i) > 0)
         {
           const auto dof = partitioner.local_to_global(i);
-          matrix.add(dof, dof, work.local_element(i));
+          matrix.add_to_diagonal(dof, work.local_element(i));
         }
-    matrix.end_adding();
+    matrix.compress(VectorOperation::add);
   }
 
   template <int dim>
@@ -321,16 +268,16 @@ namespace impm
   MomentumBalance<dim>::near_null_space() const
   {
     const unsigned int n =
-      discretization.numbering->partitioner->locally_owned_size();
+      parts.discretization.numbering->partitioner->locally_owned_size();
     const unsigned int n_modes =
       dim + (parts.has_rotations ? dim * (dim - 1) / 2 : 0);
     std::vector<std::vector<double>> modes(n_modes, std::vector<double>(n));
     for (unsigned int i = 0; i < n; ++i)
       {
-        if (constraints.is_constrained[i])
+        if (is_constrained(i))
           continue;
         const unsigned int c     = i % dim;
-        const auto        &place = discretization.node_positions[i / dim];
+        const auto        &place = parts.discretization.node_positions[i / dim];
         modes[c][i]              = 1;
         unsigned int mode        = dim;
         if (parts.has_rotations)

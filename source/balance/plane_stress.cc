@@ -6,19 +6,22 @@
 namespace impm
 {
   bool
-  PlaneStress::evaluate(const Material             &material,
+  evaluate_plane_stress(const Material             &material,
                         const dealii::Tensor<2, 3> &start,
                         const double                dt,
                         const double               *history,
                         double                     *trial_history,
                         dealii::Tensor<2, 3>       &increment,
                         Material::Response         &response,
-                        double                     *matrix)
+                        double                     *matrix,
+                        unsigned long              &n_evaluations)
   {
+    // with the thickness as the hoop of axisymmetry
+    const Kinematics<2>    thick(true);
+    Kinematics<2>::Matrix  space;
     constexpr unsigned int n = 5, h = n - 1;
     constexpr double       infinity = std::numeric_limits<double>::infinity();
     const auto             form     = material.form();
-    Matrix                 space;
 
     // Newton's method for the strain across: ln dF_33, or the linear one. The
     // stress that the law knows, tau or (by volume at t_n or as tau / J) sigma,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace impm
 {
@@ -15,8 +16,7 @@ namespace impm
     double
     force_of_cell(const Bodies<dim>         &bodies,
                   const MaterialPoints<dim> &points,
-                  const Footprints<dim>     &footprints,
-                  const MPI_Comm             communicator)
+                  const Footprints<dim>     &footprints)
     {
       double stiffness = 0, volume = std::numeric_limits<double>::max();
       for (const auto &body : bodies)
@@ -33,37 +33,7 @@ namespace impm
       const bool axisymmetric =
         points.layout.geometry == GeometryKind::axisymmetric;
       return (axisymmetric ? 2 * numbers::PI : 1.) * stiffness *
-             Utilities::MPI::min(volume, communicator);
-    }
-
-    /** Forces (N) of the bodies of a group at a strain of one. */
-    template <int dim>
-    Vector
-    forces_at_unit_strain(const MaterialPoints<dim>       &points,
-                          const Footprints<dim>           &footprints,
-                          const Discretization<dim>       &discretization,
-                          const std::vector<unsigned int> &group_of_body,
-                          const unsigned int               group)
-    {
-      Vector forces;
-      discretization.initialize(forces);
-      for (const auto &cell : footprints.cells)
-        for (unsigned int e = cell.begin; e < cell.end; ++e)
-          {
-            const unsigned int p = footprints.point[e];
-            if (group_of_body[points.body(p)] != group)
-              continue;
-            const double force = footprints.weight[e] *
-                                 points.initial_volume(p) *
-                                 points.material(p).stiffness() / cell.extent;
-            for (unsigned int n = 0; n < Footprints<dim>::n_nodes; ++n)
-              if (footprints.touches(e, n))
-                for (unsigned int c = 0; c < dim; ++c)
-                  forces.local_element(dim * cell.nodes[n] + c) += force;
-          }
-      forces.compress(VectorOperation::add);
-      discretization.condense_hanging(forces);
-      return forces;
+             Utilities::MPI::min(volume, points.communicator);
     }
   } // namespace
 
@@ -74,42 +44,54 @@ namespace impm
                              const MaterialPoints<dim> &points,
                              const Footprints<dim>     &footprints,
                              const Discretization<dim> &discretization)
-    : is_by_body(scale == ResidualScale::body)
-    , communicator(discretization.communicator)
+    : communicator(discretization.communicator)
   {
+    const bool   is_by_body   = scale == ResidualScale::body;
     unsigned int n_deformable = 0;
     for (const auto &body : bodies)
       {
         group_of_body.push_back(is_by_body ? n_deformable : 0);
         n_deformable += !body.rigid;
       }
-    const unsigned int  n = is_by_body ? n_deformable : 1;
-    std::vector<Vector> forces;
-    for (unsigned int g = 0; g < n; ++g)
-      {
-        forces.push_back(forces_at_unit_strain(
-          points, footprints, discretization, group_of_body, g));
-        stiffness.push_back(forces.back().l2_norm());
-      }
+    std::vector<Vector> forces(is_by_body ? n_deformable : 1);
+    for (Vector &force : forces)
+      discretization.initialize(force);
+    for (const auto &cell : footprints.cells)
+      for (unsigned int e = cell.begin; e < cell.end; ++e)
+        {
+          const unsigned int p     = footprints.point[e];
+          Vector            &force = forces[group_of_body[points.body(p)]];
+          const double share = footprints.weight[e] * points.initial_volume(p) *
+                               points.material(p).stiffness() / cell.extent;
+          for (unsigned int n = 0; n < Footprints<dim>::n_nodes; ++n)
+            if (footprints.touches(e, n))
+              for (unsigned int c = 0; c < dim; ++c)
+                force.local_element(dim * cell.nodes[n] + c) += share;
+        }
     discretization.initialize(unit_strain_forces);
-    for (const auto &force : forces)
-      unit_strain_forces += force;
+    for (Vector &force : forces)
+      {
+        force.compress(VectorOperation::add);
+        discretization.condense_hanging(force);
+        stiffness.push_back(force.l2_norm());
+        unit_strain_forces += force;
+      }
     unit_strain_forces.update_ghost_values();
 
     units = stiffness;
     if (scale == ResidualScale::cell)
-      units = {force_of_cell(bodies, points, footprints, communicator)};
+      units = {force_of_cell(bodies, points, footprints)};
     else if (scale == ResidualScale::momentum)
       units = {1 / dt};
-    if (n > 1)
+    if (forces.size() > 1)
       find_neighbors(forces);
   }
 
   void
   ResidualNorm::find_neighbors(const std::vector<Vector> &forces)
   {
-    const unsigned int        n = forces.size();
-    std::vector<unsigned int> touch(n * n);
+    const unsigned int n = forces.size();
+    nearby.resize(n * n);
     shares.resize(n);
     for (unsigned int i = 0; i < unit_strain_forces.locally_owned_size(); ++i)
       for (unsigned int g = 0; g < n; ++g)
@@ -120,16 +102,14 @@ namespace impm
                                    unit_strain_forces.local_element(i)});
             for (unsigned int h = 0; h < n; ++h)
               if (forces[h].local_element(i) > 0)
-                touch[n * g + h] = 1;
+                nearby[n * g + h] = 1;
           }
-    Utilities::MPI::max(touch, communicator, touch);
+    Utilities::MPI::max(nearby, communicator, nearby);
     for (unsigned int k = 0; k < n; ++k)
       for (unsigned int g = 0; g < n; ++g)
         for (unsigned int h = 0; h < n; ++h)
-          if (touch[n * g + k] > 0 && touch[n * k + h] > 0)
-            touch[n * g + h] = 1;
-    for (unsigned int g = 0; g < n; ++g)
-      nearby.emplace_back(touch.begin() + n * g, touch.begin() + n * (g + 1));
+          if (nearby[n * g + k] > 0 && nearby[n * k + h] > 0)
+            nearby[n * g + h] = 1;
   }
 
   std::vector<double>
@@ -137,8 +117,8 @@ namespace impm
   {
     std::vector<double> sums(n_groups());
     if (shares.empty())
-      for (unsigned int i = 0; i < force.locally_owned_size(); ++i)
-        sums[0] += force.local_element(i) * force.local_element(i);
+      sums[0] =
+        std::inner_product(force.begin(), force.end(), force.begin(), 0.);
     else
       for (unsigned int g = 0; g < n_groups(); ++g)
         for (const auto &share : shares[g])
@@ -163,10 +143,10 @@ namespace impm
     for (unsigned int g = 0; g < n_groups(); ++g)
       norms[g] /= units[g];
     std::vector<double> result = norms;
-    for (unsigned int g = 0; g < nearby.size(); ++g)
-      for (unsigned int h = 0; h < nearby.size(); ++h)
-        if (nearby[g][h])
-          result[g] = std::max(result[g], norms[h]);
+    for (unsigned int i = 0; i < nearby.size(); ++i)
+      if (nearby[i] > 0)
+        result[i / n_groups()] =
+          std::max(result[i / n_groups()], norms[i % n_groups()]);
     return result;
   }
 

@@ -1,9 +1,5 @@
 #include <impm/balance/step_problem.h>
-#include <impm/balance/terms/ghost_penalty.h>
-#include <impm/balance/terms/holding.h>
-#include <impm/balance/terms/inertia.h>
-#include <impm/balance/terms/internal_forces.h>
-#include <impm/balance/terms/loads.h>
+#include <impm/balance/terms/isolated_cells.h>
 #include <impm/base/exceptions.h>
 
 #include <algorithm>
@@ -22,11 +18,18 @@ namespace impm
                      const Discretization<dim> &discretization,
                      const bool                 has_inertia)
     {
-      Footprints<dim> footprints;
-      builder.build(points, grid, discretization, footprints);
+      auto footprints = builder.build(points, grid, discretization);
       if (has_inertia && !grid.is_lagrangian)
         footprints.release_massless_nodes(discretization);
       return footprints;
+    }
+    /** A scene has the terms that it needs and no others. */
+    std::vector<Term *>
+    those_that_are(std::vector<Term *> terms)
+    {
+      terms.erase(std::remove(terms.begin(), terms.end(), nullptr),
+                  terms.end());
+      return terms;
     }
   } // namespace
 
@@ -60,7 +63,7 @@ namespace impm
                   time,
                   dt,
                   norm.unit_strain_forces)
-    , response(scene.bodies, points, dt, counts.stress_evaluations)
+    , response(points, dt, counts.stress_evaluations)
     , motion(integrator.has_inertia() ? gather_motion(points,
                                                       scene.bodies,
                                                       footprints,
@@ -69,176 +72,149 @@ namespace impm
                                                       *discretization) :
                                         NodalMotion())
     , n_limited_boxes(
-        Utilities::MPI::sum(builder.n_limited_boxes, grid.communicator))
-    , n_active_dofs(count_active_dofs())
+        Utilities::MPI::sum(footprints.n_limited_boxes, grid.communicator))
+    , n_active_dofs(Utilities::MPI::sum<unsigned int>(
+        std::count(constraints.is_constrained.begin(),
+                   constraints.is_constrained.begin() +
+                     discretization->locally_owned_dofs().n_elements(),
+                   0),
+        grid.communicator))
+    , internal_forces(std::make_unique<InternalForces<dim>>(
+        footprints, response, discretization->smallest_cell_extent))
+    , ghost_penalty(scene.stabilization.ghost_penalty > 0 &&
+                        !integrator.is_explicit() ?
+                      std::make_unique<GhostPenalty<dim>>(
+                        populated,
+                        *grid.mapping,
+                        *discretization,
+                        scene.geometry,
+                        scene.stabilization.ghost_penalty) :
+                      nullptr)
+    , loads(Loads<dim>::exist_in(scene) ?
+              std::make_unique<Loads<dim>>(scene,
+                                           grid,
+                                           points,
+                                           footprints,
+                                           populated,
+                                           *discretization,
+                                           time,
+                                           time + dt) :
+              nullptr)
+    , start_forces(find_start_forces())
+    , start_acceleration(find_start_acceleration())
+    , nodal_forces(
+        make_nodal_forces(points, scene.stabilization.isolated_stiffness))
     , smoothing(
         scene.time.momentum_formulation ?
           std::make_unique<VelocitySmoothing<dim>>(
-            points, footprints, constraints, *discretization, motion.mass) :
+            points, footprints, constraints, *discretization, motion, dt) :
           nullptr)
-    , balance(*discretization,
-              constraints,
-              make_parts(scene, grid, points),
+    , balance({*discretization,
+               constraints,
+               norm,
+               those_that_are(
+                 {internal_forces.get(), ghost_penalty.get(), loads.get()}),
+               those_that_are({nodal_forces.get()}),
+               start_forces,
+               motion.mass,
+               smoothing.get(),
+               integrator.force_factor(),
+               // Inertia may be so little against stiffness that a residual
+               // which is small against this one stops a motion.
+               scene.solver.residual_scale == ResidualScale::body &&
+                 integrator.has_inertia(),
+               std::all_of(scene.bodies.begin(),
+                           scene.bodies.end(),
+                           [](const auto &body) {
+                             return body.rigid ||
+                                    body.material->has_potential();
+                           }),
+               scene.geometry != GeometryKind::axisymmetric},
               counts)
-  {}
-
-  template <int dim>
-  unsigned int
-  StepProblem<dim>::count_active_dofs() const
   {
-    const auto         first = constraints.is_constrained.begin();
-    const unsigned int n =
-      std::count(first,
-                 first +
-                   discretization->numbering->partitioner->locally_owned_size(),
-                 0);
-    return Utilities::MPI::sum(n, discretization->communicator);
-  }
-
-  template <int dim>
-  typename StepProblem<dim>::Parts
-  StepProblem<dim>::make_parts(const Scene<dim>          &scene,
-                               const BackgroundGrid<dim> &grid,
-                               const MaterialPoints<dim> &points)
-  {
-    Parts parts;
-    parts.end_weight    = integrator.force_factor();
-    parts.has_rotations = scene.geometry != GeometryKind::axisymmetric;
-    parts.has_potential =
-      std::all_of(scene.bodies.begin(),
-                  scene.bodies.end(),
-                  [](const auto &body) {
-                    return body.rigid || body.material->has_potential();
-                  });
-    parts.norm = &norm;
-    // Inertia may be so little against stiffness that a residual which is
-    // small against this one stops a motion.
-    parts.minds_forces_at_work = norm.is_by_body && integrator.has_inertia();
     if (!integrator.is_explicit())
       footprints.make_patches(response.average.groups);
-    if (smoothing)
-      {
-        parts.smoothing       = smoothing.get();
-        parts.start_increment = motion.velocity;
-        parts.start_increment *= dt;
-      }
-    add_strain_terms(scene, grid, points, parts);
-    find_start_forces(parts);
-    add_node_terms(scene, points, parts);
-    return parts;
   }
 
   template <int dim>
-  void
-  StepProblem<dim>::add_strain_terms(const Scene<dim>          &scene,
-                                     const BackgroundGrid<dim> &grid,
-                                     const MaterialPoints<dim> &points,
-                                     Parts                     &parts)
+  Vector
+  StepProblem<dim>::find_start_forces()
   {
-    auto &terms = parts.strain_terms;
-    terms.push_back(std::make_unique<InternalForces<dim>>(
-      footprints, response, discretization->smallest_cell_extent));
-    if (scene.stabilization.ghost_penalty > 0 && !integrator.is_explicit())
-      {
-        terms.push_back(std::make_unique<GhostPenalty<dim>>(
-          populated,
-          *grid.mapping,
-          *discretization,
-          scene.geometry,
-          scene.stabilization.ghost_penalty));
-        stabilization.push_back(terms.back().get());
-      }
-    if (has_loads(scene.loads, scene.faces))
-      {
-        const auto at = [&](const double instant) {
-          return gather_loads(scene.loads,
-                              scene.faces,
-                              points,
-                              footprints,
-                              grid,
-                              *discretization,
-                              populated,
-                              instant);
-        };
-        auto term = std::make_unique<Loads>(at(time), at(time + dt));
-        loads     = term.get();
-        terms.push_back(std::move(term));
-      }
-  }
-
-  template <int dim>
-  void
-  StepProblem<dim>::find_start_forces(Parts &parts)
-  {
-    start_acceleration = motion.acceleration;
+    const bool fine = response.evaluate_start();
     // One rank alone may have the point: all must learn of it.
-    const int fine = response.evaluate_start() ? 1 : 0;
-    if (Utilities::MPI::min(fine, discretization->communicator) == 0)
+    if (Utilities::MPI::min(fine ? 1 : 0, discretization->communicator) == 0)
       throw ComputationError("at t = " + std::to_string(time) +
                              " s: a point has no stress at the start of a "
                              "step");
+    Vector forces;
     // Points that carry their acceleration have none yet when they start.
     if (!integrator.needs_start_forces() &&
         !(integrator.keeps_acceleration() && time == 0))
-      return;
-    auto &forces = parts.start_forces;
+      return forces;
     discretization->initialize(forces);
-    for (const auto &term : parts.strain_terms)
+    for (const Term *term :
+         those_that_are({internal_forces.get(), loads.get()}))
       term->add_start_force(forces);
     forces.compress(VectorOperation::add);
     discretization->condense_hanging(forces);
-    for (unsigned int i = 0; i < forces.locally_owned_size(); ++i)
-      start_acceleration.local_element(i) =
-        motion.mass.local_element(i) > 0 && !constraints.is_constrained[i] ?
-          -forces.local_element(i) / motion.mass.local_element(i) :
-          0.;
+    return forces;
   }
 
   template <int dim>
-  void
-  StepProblem<dim>::add_node_terms(const Scene<dim>          &scene,
-                                   const MaterialPoints<dim> &points,
-                                   Parts                     &parts)
+  Vector
+  StepProblem<dim>::find_start_acceleration() const
   {
-    if (!integrator.has_inertia())
-      {
-        if (scene.stabilization.isolated_stiffness == 0)
-          return;
-        auto term = std::make_unique<Holding<dim>>(
-          points,
-          footprints,
-          populated,
-          *discretization,
-          constraints,
-          scene.stabilization.isolated_stiffness);
-        n_held_cells = term->n_cells;
-        if (n_held_cells > 0)
-          {
-            stabilization.push_back(term.get());
-            parts.node_terms.push_back(std::move(term));
-          }
-        return;
-      }
+    Vector acceleration = motion.acceleration;
+    for (unsigned int i = 0; i < start_forces.locally_owned_size(); ++i)
+      acceleration.local_element(i) =
+        motion.mass.local_element(i) > 0 && !constraints.is_constrained[i] ?
+          -start_forces.local_element(i) / motion.mass.local_element(i) :
+          0.;
+    return acceleration;
+  }
+
+  template <int dim>
+  std::unique_ptr<NodalForces>
+  StepProblem<dim>::make_nodal_forces(const MaterialPoints<dim> &points,
+                                      const double isolated_stiffness)
+  {
     Vector known;
     discretization->initialize(known);
-    integrator.known_acceleration(dt,
-                                  motion.velocity,
-                                  start_acceleration,
-                                  known);
-    std::function<void(const Vector &, Vector &)> smooth;
-    if (smoothing)
-      smooth = [this](const Vector &u, Vector &smoothed) {
-        smoothed = u;
-        constraints.set_zero(smoothed);
-        discretization->interpolate_hanging(smoothed);
-        smoothing->apply_derivative(smoothed, smoothed);
-      };
-    parts.node_terms.push_back(
-      std::make_unique<Inertia>(motion.mass,
-                                integrator.mass_factor(dt),
-                                std::move(known),
-                                std::move(smooth)));
-    parts.mass = &motion.mass;
+    if (integrator.has_inertia())
+      {
+        integrator.known_acceleration(dt,
+                                      motion.velocity,
+                                      start_acceleration,
+                                      known);
+        return std::make_unique<NodalForces>(motion.mass,
+                                             integrator.mass_factor(dt),
+                                             std::move(known));
+      }
+    if (isolated_stiffness == 0)
+      return nullptr;
+    const IsolatedCells<dim> isolated(points,
+                                      footprints,
+                                      populated,
+                                      *discretization,
+                                      constraints,
+                                      isolated_stiffness);
+    n_held_cells = isolated.n;
+    return n_held_cells == 0 ? nullptr :
+                               std::make_unique<NodalForces>(isolated.stiffness,
+                                                             1.,
+                                                             std::move(known));
+  }
+
+  template <int dim>
+  std::vector<const Term *>
+  StepProblem<dim>::stabilization() const
+  {
+    std::vector<const Term *> terms;
+    if (ghost_penalty)
+      terms.push_back(ghost_penalty.get());
+    if (n_held_cells > 0)
+      terms.push_back(nodal_forces.get());
+    return terms;
   }
 
   template <int dim>

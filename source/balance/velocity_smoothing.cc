@@ -10,19 +10,23 @@ namespace impm
     const Footprints<dim>      &footprints,
     const StepConstraints<dim> &constraints,
     const Discretization<dim>  &discretization,
-    const Vector               &mass)
+    const NodalMotion          &motion,
+    const double                dt)
     : points(points)
     , footprints(footprints)
     , constraints(constraints)
     , discretization(discretization)
+    , start(motion.velocity)
   {
-    discretization.initialize(inverse_mass);
+    start *= dt;
+    const Vector &mass = motion.mass;
+    discretization.initialize(scaling);
     discretization.initialize(change);
     for (unsigned int i = 0; i < mass.locally_owned_size(); ++i)
-      {
-        const double m                = mass.local_element(i);
-        inverse_mass.local_element(i) = m > 0 ? 1 / m : 0.;
-      }
+      if (constraints.is_constrained[i])
+        scaling.local_element(i) = 1;
+      else if (mass.local_element(i) > 0)
+        scaling.local_element(i) = 1 / mass.local_element(i);
   }
 
   template <int dim>
@@ -43,15 +47,13 @@ namespace impm
       result.local_element(i) =
         constraints.is_constrained[i] ?
           u.local_element(i) :
-          inverse_mass.local_element(i) * change.local_element(i);
+          scaling.local_element(i) * change.local_element(i);
     discretization.interpolate_hanging(result);
   }
 
   template <int dim>
   void
-  VelocitySmoothing<dim>::apply(const Vector &u,
-                                const Vector &start,
-                                Vector       &result) const
+  VelocitySmoothing<dim>::apply(const Vector &u, Vector &result) const
   {
     result = u;
     result -= start;
@@ -65,90 +67,60 @@ namespace impm
   }
 
   template <int dim>
-  SparseMatrix::Dofs
-  VelocitySmoothing<dim>::dofs(const typename Footprints<dim>::Patch &patch,
-                               const unsigned int component) const
-  {
-    SparseMatrix::Dofs result;
-    for (unsigned int n = patch.begin_nodes; n < patch.end_nodes; ++n)
-      result.push_back(inverse_mass.get_partitioner()->local_to_global(
-        dim * footprints.patch_nodes[n] + component));
-    return result;
-  }
-
-  template <int dim>
   void
-  VelocitySmoothing<dim>::consistent_mass(
-    const typename Footprints<dim>::Patch &patch,
-    FullMatrix<double>                    &matrix) const
-  {
-    constexpr unsigned int n_nodes = Footprints<dim>::n_nodes;
-    const unsigned int     n       = patch.end_nodes - patch.begin_nodes;
-    dealii::Vector<double> shares(n);
-    matrix.reinit(n, n);
-    for (unsigned int i = patch.begin_points; i < patch.end_points; ++i)
-      {
-        const unsigned int p = footprints.patch_points[i];
-        shares               = 0;
-        for (unsigned int k = footprints.first[p]; k < footprints.first[p + 1];
-             ++k)
-          for (unsigned int v = 0; v < n_nodes; ++v)
-            {
-              const unsigned int e = footprints.entries[k];
-              shares[footprints.place[e * n_nodes + v]] +=
-                footprints.value(e)[v];
-            }
-        for (unsigned int a = 0; a < n; ++a)
-          for (unsigned int b = 0; b < n; ++b)
-            matrix(a, b) += points.mass(p) * shares[a] * shares[b];
-      }
-  }
-
-  template <int dim>
-  Vector
-  VelocitySmoothing<dim>::scaling() const
-  {
-    Vector result = inverse_mass;
-    for (unsigned int i = 0; i < result.locally_owned_size(); ++i)
-      if (constraints.is_constrained[i])
-        result.local_element(i) = 1;
-    return result;
-  }
-
-  template <int dim>
-  std::unique_ptr<SparseMatrix>
-  VelocitySmoothing<dim>::make_spread_mass() const
+  VelocitySmoothing<dim>::fill_spread_mass(SparseMatrix &matrix) const
   {
     // Components do not mix.
-    auto matrix = std::make_unique<SparseMatrix>(
-      discretization.locally_owned_dofs(),
-      discretization.numbering->locally_relevant_dofs,
-      constraints.constraints,
-      discretization.communicator);
+    const auto &partitioner = *discretization.numbering->partitioner;
+    const auto  dofs        = [&](const auto &patch, const unsigned int c) {
+      SparseMatrix::Dofs result;
+      for (unsigned int n = patch.begin_nodes; n < patch.end_nodes; ++n)
+        result.push_back(
+          partitioner.local_to_global(dim * footprints.patch_nodes[n] + c));
+      return result;
+    };
     for (const auto &patch : footprints.patches)
       for (unsigned int c = 0; c < dim; ++c)
-        matrix->add_to_pattern(dofs(patch, c));
-    matrix->end_pattern();
+        matrix.add_to_pattern(dofs(patch, c));
+    matrix.end_pattern();
 
-    FullMatrix<double> local;
+    constexpr unsigned int n_nodes = Footprints<dim>::n_nodes;
+    FullMatrix<double>     mass; // sum_p m_p S_pI S_pJ of the nodes of a patch
+    dealii::Vector<double> shares;
     for (const auto &patch : footprints.patches)
       {
-        consistent_mass(patch, local);
+        const unsigned int n = patch.end_nodes - patch.begin_nodes;
+        mass.reinit(n, n);
+        for (unsigned int i = patch.begin_points; i < patch.end_points; ++i)
+          {
+            const unsigned int p = footprints.patch_points[i];
+            shares.reinit(n);
+            for (unsigned int k = footprints.first[p];
+                 k < footprints.first[p + 1];
+                 ++k)
+              for (unsigned int v = 0; v < n_nodes; ++v)
+                {
+                  const unsigned int e = footprints.entries[k];
+                  shares[footprints.place[e * n_nodes + v]] +=
+                    footprints.value(e)[v];
+                }
+            for (unsigned int a = 0; a < n; ++a)
+              for (unsigned int b = 0; b < n; ++b)
+                mass(a, b) += points.mass(p) * shares[a] * shares[b];
+          }
         for (unsigned int c = 0; c < dim; ++c)
-          matrix->add_block(local, dofs(patch, c));
+          matrix.add_block(mass, dofs(patch, c));
       }
-    matrix->end_adding();
+    matrix.compress(VectorOperation::add);
 
     // Identity where constrained, whatever condensing has left there.
-    const auto &partitioner = *discretization.numbering->partitioner;
     for (unsigned int i = 0; i < partitioner.locally_owned_size(); ++i)
       if (constraints.is_constrained[i])
         {
           const auto dof = partitioner.local_to_global(i);
-          matrix->set(dof, dof, 1.);
+          matrix.set_diagonal(dof, 1.);
         }
-    matrix->end_setting();
-    return matrix;
+    matrix.compress(VectorOperation::insert);
   }
 
   template class VelocitySmoothing<2>;

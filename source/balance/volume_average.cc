@@ -2,59 +2,50 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace impm
 {
   using namespace dealii;
 
   template <int dim>
-  VolumeAverage<dim>::VolumeAverage(const Bodies<dim>         &bodies,
-                                    const MaterialPoints<dim> &points,
+  VolumeAverage<dim>::VolumeAverage(const MaterialPoints<dim> &points,
                                     const Kinematics<dim>     &kinematics)
-    : points(points)
-    , kinematics(kinematics)
+    : kinematics(kinematics)
   {
-    std::vector<char> body_takes_part;
-    for (const auto &body : bodies)
-      {
-        body_takes_part.push_back(!body.rigid && body.material->average_volume);
-        used = used || body_takes_part.back();
-      }
-    if (!used)
-      return;
     groups.assign(points.size(), numbers::invalid_unsigned_int);
-    start_volume.resize(points.size());
-    jacobian.resize(points.size());
-    mean.resize(points.size() * kinematics.size);
-    coupling.resize(points.size() * kinematics.size);
-    square.resize(points.size());
-
-    std::vector<unsigned int>                  group_of_body;
-    unsigned int                               n_groups = 0, p = 0;
-    typename Triangulation<dim>::cell_iterator current;
+    std::map<std::pair<unsigned int, unsigned int>, unsigned int>
+                 group_of; // by cell and body
+    unsigned int p = 0;
     for (const auto &particle : points.sorted.particles)
       {
-        const auto cell = particle.get_surrounding_cell();
-        if (p == 0 || cell != current)
-          group_of_body.assign(body_takes_part.size(),
-                               numbers::invalid_unsigned_int);
-        current                 = cell;
-        const unsigned int body = points.body(p);
-        if (body_takes_part[body])
+        if (points.material(p).average_volume)
           {
-            if (group_of_body[body] == numbers::invalid_unsigned_int)
-              group_of_body[body] = n_groups++;
-            groups[p]       = group_of_body[body];
-            start_volume[p] = points.initial_volume(p) *
-                              determinant(points.layout.load_tensor(
-                                points.fields(p) + points.offset_deformation));
+            const auto cell = particle.get_surrounding_cell();
+            groups[p] =
+              group_of
+                .try_emplace({cell->active_cell_index(), points.body(p)},
+                             group_of.size())
+                .first->second;
           }
         ++p;
       }
-    group_volume.assign(n_groups, 0.);
+    if (group_of.empty())
+      groups.clear();
+    start_volume.resize(groups.size());
+    jacobian.resize(groups.size());
+    mean.resize(groups.size() * kinematics.size);
+    coupling.resize(groups.size() * kinematics.size);
+    square.resize(groups.size());
+    group_volume.resize(group_of.size());
     for (unsigned int q = 0; q < groups.size(); ++q)
       if (includes(q))
-        group_volume[groups[q]] += start_volume[q];
+        {
+          start_volume[q] = points.initial_volume(q) *
+                            determinant(points.layout.load_tensor(
+                              points.fields(q) + points.offset_deformation));
+          group_volume[groups[q]] += start_volume[q];
+        }
   }
 
   template <int dim>
@@ -62,8 +53,6 @@ namespace impm
   VolumeAverage<dim>::measure(const std::vector<double> &gradients,
                               const bool                 with_tangent)
   {
-    if (!used)
-      return true;
     group_change.assign(group_volume.size(), 0.);
     group_pressure.assign(group_volume.size(), 0.);
     if (with_tangent)
@@ -112,20 +101,11 @@ namespace impm
 
     if (matrix != nullptr)
       {
-        // Lists of the unit tensor and of tau; K is `matrix`.
-        typename Kinematics<dim>::List e{}, t{}, Ke{};
-        for (unsigned int i = 0; i < dim; ++i)
-          {
-            e[dim * i + i] = 1;
-            for (unsigned int j = 0; j < dim; ++j)
-              t[dim * i + j] = tau[i][j];
-          }
-        if (kinematics.axisymmetric)
-          {
-            e[dim * dim] = 1;
-            t[dim * dim] = tau[2][2];
-          }
-        double eKe = 0;
+        // K is `matrix`.
+        const auto e = kinematics.list(unit_symmetric_tensor<3>());
+        const auto t = kinematics.list(tau);
+        typename Kinematics<dim>::List Ke{};
+        double                         eKe = 0;
         for (unsigned int a = 0; a < n_g; ++a)
           {
             for (unsigned int b = 0; b < n_g; ++b)
@@ -149,10 +129,7 @@ namespace impm
             matrix[(dim * i + j) * n_g + dim * j + i] += pi;
         if (kinematics.axisymmetric)
           matrix[n_g * n_g - 1] += pi;
-        kinematics.carry_back(b.data(),
-                              inverse,
-                              volume,
-                              &coupling[point * n_g]);
+        kinematics.carry_back(b, inverse, volume, &coupling[point * n_g]);
         square[point] = volume * (eKe / (n * n) + pi / n - pi);
         group_square[groups[point]] += square[point];
       }
@@ -177,11 +154,11 @@ namespace impm
         const double pressure = group_pressure[g];
         const auto   inverse =
           invert(kinematics.deformation(&gradients[p * n_g]));
-        typename Kinematics<dim>::List m{};
-        kinematics.carry_back_stress(unit_symmetric_tensor<3>(),
-                                     inverse,
-                                     share,
-                                     m.data());
+        typename Kinematics<dim>::List m;
+        kinematics.carry_back(kinematics.list(unit_symmetric_tensor<3>()),
+                              inverse,
+                              share,
+                              m.data());
         for (unsigned int a = 0; a < n_g; ++a)
           stresses[p * n_g + a] += pressure * m[a];
         if (!with_tangent)
@@ -209,8 +186,6 @@ namespace impm
     const std::vector<double> &gradient_changes,
     std::vector<double>       &stress_changes) const
   {
-    if (!used)
-      return;
     const unsigned int n_g = kinematics.size;
     by_mean.assign(group_volume.size(), 0.);
     by_coupling.assign(group_volume.size(), 0.);

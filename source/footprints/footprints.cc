@@ -6,93 +6,89 @@ namespace impm
 {
   using namespace dealii;
 
-  template <int dim>
-  void
-  Footprints<dim>::box_shape(const Piece &piece,
-                             double      *values,
-                             double      *gradients)
+  namespace
   {
-    std::array<double, dim> extents;
-    for (unsigned int d = 0; d < dim; ++d)
-      extents[d] = cell_extent(piece.cell, d);
-    for (unsigned int v = 0; v < n_nodes; ++v)
-      {
-        double                  value = piece.weight;
-        std::array<double, dim> factor;
-        for (unsigned int d = 0; d < dim; ++d)
-          {
-            factor[d] =
-              (v >> d & 1u) ? piece.centroid[d] : 1 - piece.centroid[d];
-            value *= factor[d];
-          }
-        values[v] = value;
-        for (unsigned int d = 0; d < dim; ++d)
-          {
-            double slope = piece.weight * ((v >> d & 1u) ? 1 : -1) / extents[d];
-            for (unsigned int e = 0; e < dim; ++e)
-              if (e != d)
-                slope *= factor[e];
-            gradients[v * dim + d] = slope;
-          }
-      }
-  }
+    /** Writes the shape functions of an axis-aligned cell, times the weight of
+     * a piece. */
+    template <int dim>
+    void
+    box_shape(const typename Footprints<dim>::Piece &piece,
+              double                                *values,
+              double                                *gradients)
+    {
+      std::array<double, dim> extents;
+      for (unsigned int d = 0; d < dim; ++d)
+        extents[d] = cell_extent(piece.cell, d);
+      for (unsigned int v = 0; v < Footprints<dim>::n_nodes; ++v)
+        {
+          double                  value = piece.weight;
+          std::array<double, dim> factor;
+          for (unsigned int d = 0; d < dim; ++d)
+            {
+              factor[d] =
+                (v >> d & 1u) ? piece.centroid[d] : 1 - piece.centroid[d];
+              value *= factor[d];
+            }
+          values[v] = value;
+          for (unsigned int d = 0; d < dim; ++d)
+            {
+              double slope =
+                piece.weight * ((v >> d & 1u) ? 1 : -1) / extents[d];
+              for (unsigned int e = 0; e < dim; ++e)
+                if (e != d)
+                  slope *= factor[e];
+              gradients[v * dim + d] = slope;
+            }
+        }
+    }
 
-  template <int dim>
-  void
-  Footprints<dim>::mapped_shape(const Piece               &piece,
-                                const Discretization<dim> &discretization,
-                                double                    *values,
-                                double                    *gradients)
-  {
-    const auto    &positions = discretization.node_positions;
-    const auto     nodes     = discretization.nodes_of(piece.cell);
-    Tensor<2, dim> jacobian; // d x_i / d xi_j
-    std::array<Tensor<1, dim>, n_nodes> slopes;
-    for (unsigned int v = 0; v < n_nodes; ++v)
-      {
-        values[v] =
-          piece.weight *
-          GeometryInfo<dim>::d_linear_shape_function(piece.centroid, v);
-        slopes[v] =
-          GeometryInfo<dim>::d_linear_shape_function_gradient(piece.centroid,
-                                                              v);
-        for (unsigned int i = 0; i < dim; ++i)
-          for (unsigned int j = 0; j < dim; ++j)
-            jacobian[i][j] += positions[nodes[v]][i] * slopes[v][j];
-      }
-    const auto inverse = transpose(invert(jacobian));
-    for (unsigned int v = 0; v < n_nodes; ++v)
-      {
-        const auto slope = inverse * slopes[v];
-        for (unsigned int d = 0; d < dim; ++d)
-          gradients[v * dim + d] = piece.weight * slope[d];
-      }
-  }
+    /** The same of a cell with any corners. */
+    template <int dim>
+    void
+    mapped_shape(const typename Footprints<dim>::Piece &piece,
+                 const Discretization<dim>             &discretization,
+                 double                                *values,
+                 double                                *gradients)
+    {
+      using Info                          = GeometryInfo<dim>;
+      const auto                    nodes = discretization.nodes_of(piece.cell);
+      constexpr unsigned int        n     = Footprints<dim>::n_nodes;
+      std::array<Tensor<1, dim>, n> slopes;
+      Tensor<2, dim>                jacobian; // d x_i / d xi_j
+      for (unsigned int v = 0; v < n; ++v)
+        {
+          values[v] =
+            piece.weight * Info::d_linear_shape_function(piece.centroid, v);
+          slopes[v] = Info::d_linear_shape_function_gradient(piece.centroid, v);
+          jacobian +=
+            outer_product(discretization.node_positions[nodes[v]], slopes[v]);
+        }
+      const auto inverse = transpose(invert(jacobian));
+      for (unsigned int v = 0; v < n; ++v)
+        {
+          const auto slope = piece.weight * (inverse * slopes[v]);
+          std::copy_n(slope.begin_raw(), dim, gradients + v * dim);
+        }
+    }
+  } // namespace
 
   template <int dim>
   void
   Footprints<dim>::build(const std::vector<Piece>  &pieces,
                          const unsigned int         n_points,
                          const Discretization<dim> &discretization,
-                         const Shape               &shape)
+                         const bool                 any_corners)
   {
-    this->n_points                = n_points;
-    const unsigned int n          = pieces.size();
-    const unsigned int no_slot    = numbers::invalid_unsigned_int;
-    const auto         slot_place = [&](const CellIterator &cell) -> auto &
-    {
-      return slot_of_cell[cell->active_cell_index()];
-    };
+    const unsigned int        n       = pieces.size();
+    const unsigned int        no_slot = numbers::invalid_unsigned_int;
+    std::vector<unsigned int> slots(
+      discretization.numbering->triangulation.n_active_cells(), no_slot);
 
     // Cells in the order in which they appear, and how many entries each has.
-    slot_of_cell.resize(discretization.triangulation().n_active_cells(),
-                        no_slot);
-    cells.clear();
-    cell_of_entry.resize(n);
-    for (unsigned int i = 0; i < n; ++i)
+    for (const auto &piece : pieces)
       {
-        const auto   &cell = pieces[i].cell;
-        unsigned int &slot = slot_place(cell);
+        const auto   &cell = piece.cell;
+        unsigned int &slot = slots[cell->active_cell_index()];
         if (slot == no_slot)
           {
             slot          = cells.size();
@@ -114,31 +110,30 @@ namespace impm
 
     point.resize(n);
     weight.resize(n);
+    cell_of_entry.resize(n);
     values.resize(n * n_nodes);
     gradients.resize(n * n_nodes * dim);
     first.assign(n_points + 1, 0);
     for (const auto &piece : pieces)
       {
-        const unsigned int slot = slot_place(piece.cell);
+        const unsigned int slot = slots[piece.cell->active_cell_index()];
         const unsigned int e    = cells[slot].end++;
         cell_of_entry[e]        = slot;
         point[e]                = piece.point;
         weight[e]               = piece.weight;
-        shape(piece, &values[e * n_nodes], &gradients[e * n_nodes * dim]);
+        double *value           = &values[e * n_nodes];
+        double *gradient        = &gradients[e * n_nodes * dim];
+        if (any_corners)
+          mapped_shape(piece, discretization, value, gradient);
+        else
+          box_shape<dim>(piece, value, gradient);
         ++first[piece.point + 1];
       }
-    for (const auto &cell : cells)
-      slot_place(cell.cell) = no_slot;
-
-    one_entry_each =
-      n == n_points && std::all_of(first.begin() + 1,
-                                   first.end(),
-                                   [](const unsigned int k) { return k == 1; });
     std::partial_sum(first.begin(), first.end(), first.begin());
     entries.resize(n);
-    order.assign(first.begin(), first.end());
+    auto next = first;
     for (unsigned int e = 0; e < n; ++e)
-      entries[order[point[e]]++] = e;
+      entries[next[point[e]]++] = e;
   }
 
   template <int dim>
@@ -148,26 +143,21 @@ namespace impm
   {
     // The node is across in a direction if it has no share, and its neighbour
     // in that direction has one.
-    const double tiny      = 1e-13;
-    const auto   is_across = [&](const unsigned int e, const unsigned int d) {
-      for (unsigned int side = 0; side < 2; ++side)
-        {
-          double sum = 0;
-          for (unsigned int v = 0; v < n_nodes; ++v)
-            if ((v >> d & 1u) == side)
-              sum += value(e)[v];
-          if (sum <= tiny * weight[e])
-            return static_cast<int>(side);
-        }
-      return -1;
-    };
-    std::vector<std::pair<unsigned int, unsigned int>> on_faces;
-    for (unsigned int e = 0; e < n_entries(); ++e)
+    const double tiny = 1e-13;
+    // Entry, direction, side.
+    std::vector<std::array<unsigned int, 3>> across;
+    for (unsigned int e = 0; e < point.size(); ++e)
       for (unsigned int d = 0; d < dim; ++d)
-        if (is_across(e, d) >= 0)
-          on_faces.emplace_back(e, d);
-    const MPI_Comm communicator = discretization.communicator;
-    if (Utilities::MPI::max(on_faces.size(), communicator) == 0)
+        for (unsigned int side = 0; side < 2; ++side)
+          {
+            double sum = 0;
+            for (unsigned int v = 0; v < n_nodes; ++v)
+              if ((v >> d & 1u) == side)
+                sum += value(e)[v];
+            if (sum <= tiny * weight[e])
+              across.push_back({{e, d, side}});
+          }
+    if (Utilities::MPI::max(across.size(), discretization.communicator) == 0)
       return;
 
     Vector shares;
@@ -179,9 +169,8 @@ namespace impm
     shares.compress(VectorOperation::add);
     discretization.condense_hanging(shares);
     discretization.interpolate_hanging(shares);
-    for (const auto &[e, d] : on_faces)
+    for (const auto &[e, d, side] : across)
       {
-        const auto  side      = static_cast<unsigned int>(is_across(e, d));
         const auto &nodes     = cells[cell_of_entry[e]].nodes;
         double      elsewhere = 0;
         for (unsigned int v = 0; v < n_nodes; ++v)
@@ -205,21 +194,21 @@ namespace impm
   void
   Footprints<dim>::make_patches(const std::vector<unsigned int> &coupled)
   {
-    patches.clear();
+    const unsigned int n_points = first.size() - 1;
     patch_points.resize(n_points);
     std::iota(patch_points.begin(), patch_points.end(), 0);
-    patch_nodes.clear();
-    place.resize(n_entries() * n_nodes);
+    place.resize(point.size() * n_nodes);
 
-    const auto is_coupled = [&](const unsigned int p) {
-      return !coupled.empty() && coupled[p] != numbers::invalid_unsigned_int;
+    // Zero if nothing couples a point: the invalid number overflows.
+    const auto group = [&](const unsigned int p) {
+      return coupled.empty() ? 0 : coupled[p] + 1;
     };
-    // Less than, and equal, by the cells of the points.
+    // Less than, and equal, by group, and by the cells of points without one.
     const auto compare = [&](const unsigned int p, const unsigned int q) {
-      if (is_coupled(p) || is_coupled(q))
-        return is_coupled(p) && is_coupled(q) ?
-                 (coupled[p] > coupled[q]) - (coupled[p] < coupled[q]) :
-                 is_coupled(p) - is_coupled(q);
+      if (group(p) != group(q))
+        return group(p) < group(q) ? -1 : 1;
+      if (group(p) > 0)
+        return 0;
       for (unsigned int i = first[p], j = first[q];; ++i, ++j)
         {
           if (i == first[p + 1] || j == first[q + 1])
@@ -230,13 +219,13 @@ namespace impm
             return (a > b) - (a < b);
         }
     };
-    if (!one_entry_each || !coupled.empty())
-      std::sort(patch_points.begin(),
-                patch_points.end(),
-                [&](const unsigned int p, const unsigned int q) {
-                  const int order = compare(p, q);
-                  return order != 0 ? order < 0 : p < q;
-                });
+    // Points of one entry each come sorted by cell.
+    if (point.size() != n_points || !coupled.empty())
+      std::stable_sort(patch_points.begin(),
+                       patch_points.end(),
+                       [&](const unsigned int p, const unsigned int q) {
+                         return compare(p, q) < 0;
+                       });
 
     for (unsigned int i = 0; i < n_points;)
       {
@@ -275,7 +264,7 @@ namespace impm
   Footprints<dim>::interpolate(const Vector                &field,
                                std::vector<Tensor<1, dim>> &at_points) const
   {
-    at_points.assign(n_points, Tensor<1, dim>());
+    at_points.assign(first.size() - 1, Tensor<1, dim>());
     for (const auto &cell : cells)
       for (unsigned int e = cell.begin; e < cell.end; ++e)
         for (unsigned int n = 0; n < n_nodes; ++n)

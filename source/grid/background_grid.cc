@@ -6,65 +6,43 @@
 
 #include <impm/grid/background_grid.h>
 
+#include <numeric>
+
 namespace impm
 {
   using namespace dealii;
-
-  namespace
-  {
-    /** How often all the numbers can be halved. */
-    template <std::size_t n>
-    unsigned int
-    common_halvings(std::array<unsigned int, n> numbers)
-    {
-      unsigned int halvings = 0;
-      while (std::all_of(numbers.begin(), numbers.end(), [](unsigned int k) {
-        return k % 2 == 0;
-      }))
-        {
-          for (auto &k : numbers)
-            k /= 2;
-          ++halvings;
-        }
-      return halvings;
-    }
-
-    template <int dim>
-    std::unique_ptr<const Mapping<dim>>
-    make_mapping(const bool any_quadrilaterals)
-    {
-      // Particles on faces are lost with any mapping but the Cartesian one.
-      if (any_quadrilaterals)
-        return std::make_unique<MappingQ<dim>>(1);
-      return std::make_unique<MappingCartesian<dim>>();
-    }
-  } // namespace
 
   template <int dim>
   BackgroundGrid<dim>::BackgroundGrid(const GridSpec<dim> &spec,
                                       const MPI_Comm       communicator)
     : communicator(communicator)
     , triangulation(communicator)
-    , is_lagrangian(spec.method == GridMethod::lagrangian)
-    , mapping(make_mapping<dim>(is_lagrangian))
+    , is_lagrangian(spec.is_lagrangian())
+    // Particles on faces are lost with any mapping but the Cartesian one.
+    , mapping(is_lagrangian ? MappingQ<dim>(1).clone() :
+                              MappingCartesian<dim>().clone())
     , lower_corner(spec.lower_corner)
     , upper_corner(spec.upper_corner)
   {
     // Every rank keeps all coarse cells: as few of them as give the cells
     // that were asked for.
-    const unsigned int        levels = common_halvings(spec.cells);
+    unsigned int common = 0;
+    for (const auto n : spec.cells)
+      common = std::gcd(common, n);
+    int level = 0;
+    while ((common >> level) % 2 == 0)
+      ++level;
     std::vector<unsigned int> coarse_cells;
     for (const auto n : spec.cells)
-      coarse_cells.push_back(n >> levels);
+      coarse_cells.push_back(n >> level);
     GridGenerator::subdivided_hyper_rectangle(
       triangulation, coarse_cells, lower_corner, upper_corner, true);
-    triangulation.refine_global(levels);
+    triangulation.refine_global(level);
 
-    for (unsigned int level = 0; level < spec.refinement_levels; ++level)
+    for (unsigned int i = 0; i < spec.refinement_levels; ++i, ++level)
       {
         for (const auto &cell : triangulation.active_cell_iterators())
-          if (cell->is_locally_owned() &&
-              cell->level() == static_cast<int>(levels + level) &&
+          if (cell->is_locally_owned() && cell->level() == level &&
               spec.refine_where->value(cell->center()) > 0)
             cell->set_refine_flag();
         triangulation.execute_coarsening_and_refinement();
@@ -79,38 +57,22 @@ namespace impm
           return moved;
         },
         triangulation);
-    const auto forget = [this]() {
-      numbering.reset();
-      current.reset();
-    };
-    // On ranks, too, whose own cells stay as they are.
-    auto &signals = triangulation.signals;
-    for (auto *signal : {&signals.any_change,
-                         &signals.post_distributed_refinement,
-                         &signals.post_distributed_repartition,
-                         &signals.post_distributed_load})
-      connections.emplace_back(signal->connect(forget));
+    current = std::make_shared<Discretization<dim>>(
+      std::make_shared<NodeNumbering<dim>>(triangulation, 1),
+      state.displacement);
     if (is_lagrangian)
-      discretization()->initialize(state.displacement);
+      current->initialize(state.displacement);
   }
 
   template <int dim>
-  std::shared_ptr<const Discretization<dim>>
-  BackgroundGrid<dim>::discretization() const
+  void
+  BackgroundGrid<dim>::adapt()
   {
-    if (!numbering)
-      {
-        numbering = std::make_shared<NodeNumbering<dim>>(triangulation);
-        ++epoch;
-      }
-    if (!current)
-      current =
-        std::make_shared<Discretization<dim>>(numbering,
-                                              epoch,
-                                              state.displacement.size() > 0 ?
-                                                &state.displacement :
-                                                nullptr);
-    return current;
+    triangulation.execute_coarsening_and_refinement();
+    current = std::make_shared<Discretization<dim>>(
+      std::make_shared<NodeNumbering<dim>>(triangulation,
+                                           current->numbering->epoch + 1),
+      state.displacement);
   }
 
   template <int dim>
@@ -121,8 +83,6 @@ namespace impm
     const double       fixed   = face_position(face ^ 1u);
     const double       before  = face_position(face);
     const double       stretch = (position - fixed) / (before - fixed);
-    // The cells stay, only their corners move.
-    const auto kept = numbering;
     GridTools::transform(
       [&](const Point<dim> &vertex) {
         Point<dim> moved = vertex;
@@ -132,20 +92,20 @@ namespace impm
       },
       triangulation);
     (face % 2 == 0 ? lower_corner : upper_corner)[d] = position;
-    numbering                                        = kept;
+    current = std::make_shared<Discretization<dim>>(current->numbering,
+                                                    state.displacement);
   }
 
   template <int dim>
   void
-  BackgroundGrid<dim>::carry(const Vector &increment,
-                             const Vector &end_velocity,
-                             const Vector &end_acceleration)
+  BackgroundGrid<dim>::carry(const StepResult &result)
   {
-    state.displacement += increment;
+    state.displacement += result.increment;
     state.displacement.update_ghost_values();
-    state.velocity     = end_velocity;
-    state.acceleration = end_acceleration;
-    current.reset();
+    state.velocity     = result.velocity;
+    state.acceleration = result.acceleration;
+    current = std::make_shared<Discretization<dim>>(current->numbering,
+                                                    state.displacement);
   }
 
   template class BackgroundGrid<2>;

@@ -1,6 +1,7 @@
 #include <deal.II/dofs/dof_tools.h>
 
 #include <deal.II/fe/fe_q.h>
+#include <deal.II/fe/fe_system.h>
 
 #include <impm/base/compat.h>
 #include <impm/grid/discretization.h>
@@ -14,49 +15,27 @@ namespace impm
 
   template <int dim>
   NodeNumbering<dim>::NodeNumbering(
-    const parallel::TriangulationBase<dim> &triangulation)
-    : triangulation(triangulation)
-    , fe(FE_Q<dim>(1), dim)
+    const parallel::TriangulationBase<dim> &triangulation,
+    const unsigned int                      epoch)
+    : epoch(epoch)
+    , triangulation(triangulation)
     , dof_handler(triangulation)
+    , any_hanging(triangulation.has_hanging_nodes())
   {
-    dof_handler.distribute_dofs(fe);
+    dof_handler.distribute_dofs(FESystem<dim>(FE_Q<dim>(1), dim));
+    const IndexSet &owned = dof_handler.locally_owned_dofs();
     locally_relevant_dofs =
       DoFTools::extract_locally_relevant_dofs(dof_handler);
-    const MPI_Comm communicator = triangulation.get_communicator();
-    find_hanging_nodes();
-    partitioner = std::make_shared<Utilities::MPI::Partitioner>(
-      dof_handler.locally_owned_dofs(), locally_relevant_dofs, communicator);
-    for (const auto &line : hanging_nodes.get_lines())
-      if (dof_handler.locally_owned_dofs().is_element(line.index))
-        {
-          HangingValue value;
-          value.index = partitioner->global_to_local(line.index);
-          for (const auto &[master, weight] : line.entries)
-            value.masters.emplace_back(partitioner->global_to_local(master),
-                                       weight);
-          hanging.push_back(std::move(value));
-        }
-    any_hanging =
-      Utilities::MPI::max(hanging.empty() ? 0 : 1, communicator) > 0;
-  }
-
-  template <int dim>
-  void
-  NodeNumbering<dim>::find_hanging_nodes()
-  {
-    const IndexSet &owned = dof_handler.locally_owned_dofs();
     hanging_nodes = compat::make_constraints(owned, locally_relevant_dofs);
     DoFTools::make_hanging_node_constraints(dof_handler, hanging_nodes);
     const MPI_Comm communicator = triangulation.get_communicator();
-    if (Utilities::MPI::n_mpi_processes(communicator) > 1 &&
-        triangulation.has_hanging_nodes())
+    if (any_hanging && Utilities::MPI::n_mpi_processes(communicator) > 1)
       {
         // A box may touch a ghost cell with a node that hangs on a cell which
         // this rank does not see.
-        hanging_nodes.make_consistent_in_parallel(
-          dof_handler.locally_owned_dofs(),
-          locally_relevant_dofs,
-          communicator);
+        hanging_nodes.make_consistent_in_parallel(owned,
+                                                  locally_relevant_dofs,
+                                                  communicator);
         locally_relevant_dofs = hanging_nodes.get_local_lines();
         for (const auto &line : hanging_nodes.get_lines())
           for (const auto &entry : line.entries)
@@ -68,16 +47,26 @@ namespace impm
         hanging_nodes.copy_from(known);
       }
     hanging_nodes.close();
+    partitioner =
+      std::make_shared<Utilities::MPI::Partitioner>(owned,
+                                                    locally_relevant_dofs,
+                                                    communicator);
+    for (const auto &line : hanging_nodes.get_lines())
+      if (owned.is_element(line.index))
+        {
+          HangingValue value{partitioner->global_to_local(line.index), {}};
+          for (const auto &[master, weight] : line.entries)
+            value.masters.emplace_back(partitioner->global_to_local(master),
+                                       weight);
+          hanging.push_back(std::move(value));
+        }
   }
 
   template <int dim>
   Discretization<dim>::Discretization(
-    std::shared_ptr<const NodeNumbering<dim>> numbering,
-    const unsigned int                        epoch,
-    const Vector                             *shift)
+    std::shared_ptr<const NodeNumbering<dim>> numbering, const Vector &shift)
     : numbering(std::move(numbering))
     , communicator(this->numbering->triangulation.get_communicator())
-    , epoch(epoch)
     , smallest_cell_extent(std::numeric_limits<double>::max())
   {
     // Through a vector, for nodes that belong to no cell of this rank.
@@ -99,8 +88,8 @@ namespace impm
     smallest_cell_extent =
       Utilities::MPI::min(smallest_cell_extent, communicator);
     coordinates.zero_out_ghost_values();
-    if (shift != nullptr)
-      coordinates += *shift;
+    if (shift.size() > 0)
+      coordinates += shift;
     coordinates.update_ghost_values();
     node_positions.resize((coordinates.locally_owned_size() +
                            coordinates.get_partitioner()->n_ghost_indices()) /
@@ -158,8 +147,8 @@ namespace impm
     vector.compress(VectorOperation::add);
   }
 
-  template class NodeNumbering<2>;
-  template class NodeNumbering<3>;
+  template struct NodeNumbering<2>;
+  template struct NodeNumbering<3>;
   template class Discretization<2>;
   template class Discretization<3>;
 } // namespace impm

@@ -8,20 +8,15 @@ namespace impm
   PopulatedCells<dim>::PopulatedCells(const Footprints<dim>     &footprints,
                                       const MaterialPoints<dim> &points,
                                       const Discretization<dim> &discretization)
-    : stiffness(discretization.triangulation().n_active_cells(), 0.)
   {
     // A point near the border of a rank touches cells of its neighbour. The
     // largest compliance survives the exchange, and zero means empty.
-    Vector      compliance(discretization.triangulation()
-                        .global_active_cell_index_partitioner()
-                        .lock());
-    const auto &partitioner = *compliance.get_partitioner();
-    const auto  place       = [&](const auto &cell) {
-      return partitioner.global_to_local(cell->global_active_cell_index());
-    };
+    const auto &triangulation = discretization.numbering->triangulation;
+    Vector      compliance(
+      triangulation.global_active_cell_index_partitioner().lock());
     for (const auto &cell : footprints.cells)
       {
-        double &value = compliance.local_element(place(cell.cell));
+        double &value = compliance(cell.cell->global_active_cell_index());
         for (unsigned int e = cell.begin; e < cell.end; ++e)
           value =
             std::max(value,
@@ -30,17 +25,17 @@ namespace impm
     compliance.compress(VectorOperation::max);
     compliance.update_ghost_values();
 
+    stiffness.resize(triangulation.n_active_cells());
     for (const auto &cell :
          discretization.dof_handler().active_cell_iterators())
       if (!cell->is_artificial())
-        {
-          const double value = compliance.local_element(place(cell));
-          if (value == 0)
-            continue;
-          stiffness[cell->active_cell_index()] = 1 / value;
-          if (cell->is_locally_owned())
-            cells.push_back({cell, discretization.nodes_of(cell)});
-        }
+        if (const double value = compliance(cell->global_active_cell_index());
+            value > 0)
+          {
+            stiffness[cell->active_cell_index()] = 1 / value;
+            if (cell->is_locally_owned())
+              cells.push_back({cell, discretization.nodes_of(cell)});
+          }
   }
 
   template class PopulatedCells<2>;

@@ -1,42 +1,60 @@
 #include <impm/grid/rigid_bodies.h>
 #include <impm/scene/seeding.h>
 
+#include <algorithm>
+#include <limits>
+
 namespace impm
 {
   using namespace dealii;
+
+  namespace
+  {
+    /** How far a place is outside of a box, across the side that is furthest
+     * from it (m). */
+    template <int dim>
+    double
+    gap(const BoundingBox<dim> &box, const Point<dim> &place)
+    {
+      double largest = -std::numeric_limits<double>::max();
+      for (unsigned int d = 0; d < dim; ++d)
+        largest = std::max({largest,
+                            box.lower_bound(d) - place[d],
+                            place[d] - box.upper_bound(d)});
+      return largest;
+    }
+  } // namespace
 
   template <int dim>
   RigidBodies<dim>::RigidBodies(const Bodies<dim>         &specs,
                                 const GeometryKind         geometry,
                                 const BackgroundGrid<dim> &grid)
+    : grid(grid)
+    , tolerance(1e-4 * grid.discretization()->smallest_cell_extent)
   {
-    std::vector<BoundingBox<dim>> boxes;
     for (const auto &spec : specs)
       if (spec.rigid)
         {
           auto points = std::make_unique<SortedParticles<dim>>(grid, 0);
+          BoundingBox<dim> box;
           if (grid.is_lagrangian)
-            boxes.push_back(*spec.shape->bounding_box());
+            box = *spec.shape->bounding_box;
           else
             points->insert(seed_body(specs, spec, geometry, grid));
           points->sort();
-          bodies.push_back({&spec, std::move(points)});
+          bodies.push_back({&spec, std::move(points), box});
         }
-    if (!boxes.empty())
-      {
-        contact.emplace(grid, boxes);
-        contact->stick(displacements(0));
-      }
+    if (grid.is_lagrangian)
+      holders_of_nodes.resize(grid.discretization()->node_positions.size());
+    stick(0);
   }
 
   template <int dim>
   Tensor<1, dim>
-  RigidBodies<dim>::displacement(const unsigned int body,
-                                 const double       from,
-                                 const double       to) const
+  RigidBodies<dim>::Body::displacement(const double from, const double to) const
   {
     Tensor<1, dim> displacement;
-    if (const auto &function = bodies[body].spec->displacement)
+    if (const auto &function = spec->displacement)
       for (unsigned int d = 0; d < dim; ++d)
         displacement[d] =
           function->value(Point<1>(to), d) - function->value(Point<1>(from), d);
@@ -47,25 +65,30 @@ namespace impm
   void
   RigidBodies<dim>::move(const double from, const double to)
   {
-    if (contact)
-      contact->stick(displacements(to));
-    for (unsigned int b = 0; b < bodies.size(); ++b)
+    stick(to);
+    for (const auto &body : bodies)
       {
-        const auto shift = displacement(b, from, to);
-        for (auto &particle : bodies[b].points->particles)
+        const auto shift = body.displacement(from, to);
+        for (auto &particle : body.points->particles)
           particle.set_location(particle.get_location() + shift);
+        body.points->sort();
       }
-    sort();
   }
 
   template <int dim>
-  typename NodeContact<dim>::Shifts
-  RigidBodies<dim>::displacements(const double time) const
+  void
+  RigidBodies<dim>::stick(const double time)
   {
-    typename NodeContact<dim>::Shifts shifts;
+    const auto discretization = grid.discretization();
     for (unsigned int b = 0; b < bodies.size(); ++b)
-      shifts.push_back(displacement(b, 0, time));
-    return shifts;
+      {
+        const auto shift = bodies[b].displacement(0, time);
+        for (unsigned int n = 0; n < holders_of_nodes.size(); ++n)
+          if (holders_of_nodes[n] == 0 &&
+              gap(bodies[b].box, discretization->node_positions[n] - shift) <=
+                tolerance)
+            holders_of_nodes[n] = b + 1;
+      }
   }
 
   template <int dim>
@@ -75,35 +98,30 @@ namespace impm
                                 const double             from,
                                 const double             to) const
   {
-    return contact ? contact->first_touch(u,
-                                          constrained,
-                                          displacements(from),
-                                          displacements(to)) :
-                     1.;
-  }
-
-  template <int dim>
-  void
-  RigidBodies<dim>::sort()
-  {
-    for (auto &body : bodies)
-      body.points->sort();
-  }
-
-  template <int dim>
-  void
-  RigidBodies<dim>::prepare_for_adaptation()
-  {
-    for (auto &body : bodies)
-      body.points->particles.prepare_for_coarsening_and_refinement();
-  }
-
-  template <int dim>
-  void
-  RigidBodies<dim>::unpack_after_adaptation()
-  {
-    for (auto &body : bodies)
-      body.points->particles.unpack_after_coarsening_and_refinement();
+    if (!grid.is_lagrangian || bodies.empty())
+      return 1;
+    const auto discretization = grid.discretization();
+    double     part           = 1;
+    for (const auto &body : bodies)
+      {
+        const auto start = body.displacement(0, from),
+                   end   = body.displacement(0, to);
+        for (unsigned int n = 0; n < holders_of_nodes.size(); ++n)
+          {
+            const auto first = constrained.begin() + dim * n;
+            if (holders_of_nodes[n] > 0 ||
+                std::find(first, first + dim, 0) == first + dim)
+              continue;
+            Point<dim>   place  = discretization->node_positions[n];
+            const double before = gap(body.box, place - start);
+            for (unsigned int d = 0; d < dim; ++d)
+              place[d] += u.local_element(dim * n + d);
+            const double after = gap(body.box, place - end);
+            if (after < -tolerance)
+              part = std::min(part, before / (before - after));
+          }
+      }
+    return Utilities::MPI::min(part, grid.communicator);
   }
 
   template class RigidBodies<2>;

@@ -1,72 +1,58 @@
 #include <deal.II/base/patterns.h>
 #include <deal.II/base/utilities.h>
 
-#include <impm/base/exceptions.h>
 #include <impm/base/files.h>
 #include <impm/base/names.h>
 #include <impm/input/parameter_file.h>
 #include <impm/input/parameter_messages.h>
 
-#include <boost/algorithm/string/predicate.hpp>
-
 #include <algorithm>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <set>
 #include <sstream>
+#include <utility>
 
 namespace impm
 {
+  using dealii::ParameterHandler;
+  using Path = std::vector<std::string>;
+
   namespace
   {
-    std::vector<std::string>
+    Path
     split_path(const std::string &path)
     {
       return dealii::Utilities::split_string_list(path, '/');
     }
 
-    /** `Section/Name=value` as the lines of a parameter file. */
+    /** `Section/Name=value` as the text of a parameter file. */
     std::string
     override_as_text(const std::string &override)
     {
+      const auto refuse = [&](const std::string &why) {
+        throw InputError("", "--set " + override + ": " + why);
+      };
       const auto equal = override.find('=');
+      const auto path  = split_path(override.substr(0, equal));
       if (equal == std::string::npos)
-        throw InputError("",
-                         "--set " + override +
-                           ": found no '=', allowed is Section/Name=value");
-      auto              path = split_path(override.substr(0, equal));
-      const std::string name = path.back();
-      path.pop_back();
-      std::string text;
-      for (const auto &section : path)
-        text += "subsection " + section + "\n";
-      text += "set " + name + " = " + override.substr(equal + 1) + "\n";
-      for (unsigned int i = 0; i < path.size(); ++i)
-        text += "end\n";
+        refuse("found no '=', allowed is Section/Name=value");
+      if (path.empty())
+        refuse("found no name, allowed is Section/Name=value");
+      if (path == split_path("Study/Scene"))
+        refuse("only a file sets it");
+      std::string text =
+        "set " + path.back() + " = " + override.substr(equal + 1) + "\n";
+      for (auto section = path.rbegin() + 1; section != path.rend(); ++section)
+        text = "subsection " + *section + "\n" + text + "end\n";
       return text;
     }
 
-    std::vector<std::string>
-    path_of(const std::string &override)
-    {
-      return split_path(override.substr(0, override.find('=')));
-    }
-
-    std::string
-    read_text(const std::string &file_name)
-    {
-      if (!std::ifstream(file_name))
-        throw InputError("",
-                         "cannot read the parameter file '" + file_name + "'");
-      return content_of(file_name);
-    }
-
     void
-    parse(dealii::ParameterHandler &prm,
-          const std::string        &text,
-          const std::string        &name,
-          const bool                strict)
+    parse(ParameterHandler  &prm,
+          const std::string &text,
+          const std::string &name,
+          const bool         strict)
     {
       std::istringstream in(text);
       try
@@ -79,34 +65,6 @@ namespace impm
         }
     }
 
-    /** The value of an entry, if it has been declared. */
-    std::string
-    look_up(dealii::ParameterHandler &prm,
-            const std::string        &path,
-            const std::string        &fallback)
-    {
-      auto              sections = split_path(path);
-      const std::string name     = sections.back();
-      sections.pop_back();
-      for (unsigned int i = 0; i < sections.size(); ++i)
-        if (prm.subsection_path_exists(std::vector<std::string>(
-              sections.begin(), sections.begin() + i + 1)) == false)
-          return fallback;
-      try
-        {
-          // what is not declared reads as "" where deal.II does not check
-          const std::string value = prm.get(sections, name);
-          return value.empty() ? fallback : value;
-        }
-      catch (const dealii::ParameterHandler::ExcEntryUndeclared &)
-        {
-          return fallback;
-        }
-    }
-  } // namespace
-
-  namespace
-  {
     /** Choices between methods for one and the same problem. */
     bool
     is_method(const std::string &path)
@@ -120,171 +78,123 @@ namespace impm
                                                     "Solver/Linear solver",
                                                     "Solver/Operator"};
       return methods.count(path) > 0 ||
-             boost::algorithm::ends_with(path, "/Points from");
+             split_path(path).back() == "Points from";
     }
 
-    std::set<std::vector<std::string>>
-    declared_entries(const dealii::ParameterHandler &prm)
+    std::set<Path>
+    declared_entries(const ParameterHandler &prm)
     {
-      std::ostringstream listing;
-      prm.print_parameters(listing,
-                           dealii::ParameterHandler::ShortPRM |
-                             dealii::ParameterHandler::KeepDeclarationOrder);
-      std::set<std::vector<std::string>> entries;
-      for_each_entry(listing.str(),
-                     [&](const std::vector<std::string> &path,
-                         unsigned int,
-                         const bool is_subsection) {
-                       if (!is_subsection)
-                         entries.insert(path);
-                     });
+      std::set<Path> entries;
+      for (const auto &line : lines_of(text_of(prm)))
+        if (!line.is_subsection)
+          entries.insert(line.path);
       return entries;
     }
   } // namespace
 
-  ParameterFile::ParameterFile(const std::string              &file_name,
-                               const std::vector<std::string> &overrides,
-                               const Declare                  &declare)
+  ParameterFile::ParameterFile(
+    const std::string                                             &file_name,
+    const std::vector<std::string>                                &overrides,
+    const std::function<void(ParameterHandler &, const Chosen &)> &declare)
     : file_name(file_name)
-    , overrides(overrides)
   {
-    sources.push_back({file_name, read_text(file_name)});
+    if (!std::ifstream(file_name))
+      throw InputError("",
+                       "cannot read the parameter file '" + file_name + "'");
+    sources.push_back({file_name, content_of(file_name)});
     read_scene_of_study();
+    for (const auto &override : overrides)
+      sources.push_back({"--set " + override, override_as_text(override)});
 
     // Lists of names, then what each name chooses, then what that choice
     // declares (a union may name other shapes), then what a choice among that
     // declares (the constants of a law): four readings find them.
     const unsigned int n_readings = 4;
-    prm = std::make_unique<dealii::ParameterHandler>();
+    prm                           = std::make_unique<ParameterHandler>();
     for (unsigned int reading = 1; reading <= n_readings; ++reading)
       {
-        const auto before   = std::move(prm);
-        prm                 = std::make_unique<dealii::ParameterHandler>();
+        const bool strict = reading == n_readings;
+        const auto before =
+          std::exchange(prm, std::make_unique<ParameterHandler>());
         const Chosen chosen = chosen_in(*before);
         declare(*prm, chosen);
-        if (reading == n_readings)
+        if (strict)
           {
-            dealii::ParameterHandler others;
+            ParameterHandler others;
             declare(others,
                     [&](const std::string &path, const std::string &fallback) {
                       return is_method(path) ? "any" : chosen(path, fallback);
                     });
             drop_idle_entries(others);
           }
-        read(*prm, reading == n_readings);
+        for (const auto &source : sources)
+          parse(*prm, source.text, source.name, strict);
       }
   }
 
   void
   ParameterFile::read_scene_of_study()
   {
-    dealii::ParameterHandler handler;
-    handler.enter_subsection("Study");
-    handler.declare_entry("Scene", "");
-    handler.leave_subsection();
+    ParameterHandler handler;
+    in_section(handler, "Study", [&]() { handler.declare_entry("Scene", ""); });
     parse(handler, sources.back().text, file_name, false);
-    const std::string scene = look_up(handler, "Study/Scene", "");
+    const std::string scene = chosen_in(handler)("Study/Scene", "");
     if (scene.empty())
       return;
+    const auto refuse = [&](const std::string &why) {
+      throw InputError("",
+                       locate("Study/Scene") +
+                         ": entry 'Study/Scene': found '" + scene + "', " +
+                         why);
+    };
     const auto name =
       (std::filesystem::path(file_name).parent_path() / scene).string();
-    const auto fail = [&](const std::string &message) {
-      throw InputError("", locate("Study/Scene") + ": " + message);
-    };
     if (!std::ifstream(name))
-      fail(
-        "entry 'Study/Scene': found '" + scene +
-        "', allowed is the path of a parameter file from here; cannot read '" +
+      refuse(
+        "allowed is the path of a parameter file from here; cannot read '" +
         name + "'");
-    const std::string text = read_text(name);
-    for_each_entry(
-      text,
-      [&](const std::vector<std::string> &path, const unsigned int line, bool) {
-        if (path[0] == "Study")
-          fail("entry 'Study/Scene': found '" + scene +
-               "', which has in line " + std::to_string(line) +
+    const std::string text = content_of(name);
+    for (const auto &line : lines_of(text))
+      if (line.path[0] == "Study")
+        refuse("which has in line " + std::to_string(line.number) +
                " a section Study of its own, allowed is a scene without");
-      });
     sources.insert(sources.begin(), {name, text});
   }
 
   void
-  ParameterFile::drop_idle_entries(const dealii::ParameterHandler &others)
+  ParameterFile::drop_idle_entries(const ParameterHandler &others)
   {
     const auto active = declared_entries(*prm), all = declared_entries(others);
-    const auto is_idle = [&](const std::vector<std::string> &path) {
-      return active.count(path) == 0 && all.count(path) > 0;
-    };
-    const auto warn = [&](const std::string              &place,
-                          const std::vector<std::string> &path) {
-      std::string name;
-      for (const auto &part : path)
-        name += (name.empty() ? "" : "/") + part;
-      warnings.push_back(place + ": entry '" + name +
-                         "' does nothing in this scene");
-    };
     for (auto &source : sources)
       {
-        std::set<unsigned int> idle;
-        for_each_entry(source.text,
-                       [&](const std::vector<std::string> &path,
-                           const unsigned int              line,
-                           const bool                      is_subsection) {
-                         if (is_subsection || !is_idle(path))
-                           return;
-                         idle.insert(line);
-                         warn("file " + source.name + ", line " +
-                                std::to_string(line),
-                              path);
-                       });
         // Lines stay where they are, for messages that count them.
-        std::istringstream in(source.text);
-        std::string        line, kept;
-        for (unsigned int number = 1; std::getline(in, line); ++number)
-          kept += (idle.count(number) > 0 ? "" : line) + "\n";
-        source.text = kept;
-      }
-    const auto end = std::remove_if(overrides.begin(),
-                                    overrides.end(),
-                                    [&](const std::string &override) {
-                                      const auto path = path_of(override);
-                                      if (!is_idle(path))
-                                        return false;
-                                      warn("--set " + override, path);
-                                      return true;
-                                    });
-    overrides.erase(end, overrides.end());
-  }
-
-  void
-  ParameterFile::read(dealii::ParameterHandler &prm, const bool strict) const
-  {
-    for (const auto &source : sources)
-      parse(prm, source.text, source.name, strict);
-    for (const auto &override : overrides)
-      {
-        if (path_of(override) == split_path("Study/Scene"))
-          throw InputError("", "--set " + override + ": only a file sets it");
-        parse(prm, override_as_text(override), "--set " + override, strict);
+        auto kept = split(source.text, '\n');
+        for (const auto &line : lines_of(source.text))
+          if (active.count(line.path) == 0 && all.count(line.path) > 0)
+            {
+              kept[line.number - 1].clear();
+              warnings.push_back(place_of(source.name, line.number) +
+                                 ": entry '" + join(line.path, "/") +
+                                 "' does nothing in this scene");
+            }
+        source.text = join(kept, "\n");
       }
   }
 
   std::string
   ParameterFile::resolved(const std::vector<std::string> &without) const
   {
-    std::stringstream all;
-    prm->print_parameters(all,
-                          dealii::ParameterHandler::ShortPRM |
-                            dealii::ParameterHandler::KeepDeclarationOrder);
+    std::istringstream all(text_of(*prm));
     // Only sections of the top are not indented.
-    std::string text, line;
-    bool        skips = false;
+    const std::string keyword = "subsection ";
+    std::string       text, line;
+    bool              skips = false;
     while (std::getline(all, line))
       {
-        if (line.rfind("subsection ", 0) == 0)
+        if (line.rfind(keyword, 0) == 0)
           skips = std::count(without.begin(),
                              without.end(),
-                             line.substr(std::strlen("subsection "))) > 0;
+                             line.substr(keyword.size())) > 0;
         if (!skips)
           text += line + "\n";
       }
@@ -294,86 +204,90 @@ namespace impm
   std::string
   ParameterFile::locate(const std::string &path) const
   {
-    const auto wanted = split_path(path);
-    for (auto override = overrides.rbegin(); override != overrides.rend();
-         ++override)
-      if (path_of(*override) == wanted)
-        return "--set " + *override;
-
-    std::string place;
+    const Path  wanted = split_path(path);
+    std::string place  = "file " + file_name + " (entry not set there)";
     for (const auto &source : sources)
-      for_each_entry(source.text,
-                     [&](const std::vector<std::string> &here,
-                         const unsigned int              line,
-                         bool) {
-                       if (here == wanted)
-                         place = "file " + source.name + ", line " +
-                                 std::to_string(line);
-                     });
-    return place.empty() ? "file " + file_name + " (entry not set there)" :
-                           place;
+      for (const auto &line : lines_of(source.text))
+        if (line.path == wanted)
+          place = place_of(source.name, line.number);
+    return place;
+  }
+
+  std::string
+  ParameterFile::describe(const InputError &error) const
+  {
+    return (error.entry.empty() ?
+              "" :
+              locate(error.entry) + ": entry '" + error.entry + "': ") +
+           error.what();
   }
 
   ParameterFile::Chosen
-  chosen_in(dealii::ParameterHandler &prm)
+  chosen_in(ParameterHandler &prm)
   {
     return [&prm](const std::string &path, const std::string &fallback) {
-      return look_up(prm, path, fallback);
+      auto              sections = split_path(path);
+      const std::string name     = sections.back();
+      sections.pop_back();
+      if (!prm.subsection_path_exists(sections))
+        return fallback;
+      try
+        {
+          // what is not declared reads as "" where deal.II does not check
+          const std::string value = prm.get(sections, name);
+          return value.empty() ? fallback : value;
+        }
+      catch (const ParameterHandler::ExcEntryUndeclared &)
+        {
+          return fallback;
+        }
     };
   }
 
   std::vector<std::string>
   split_names(const std::string &list)
   {
-    std::vector<std::string> names;
-    for (const auto &name : dealii::Utilities::split_string_list(list))
-      if (!name.empty())
-        names.push_back(name);
+    auto names = split(list, ',');
+    names.erase(std::remove(names.begin(), names.end(), ""), names.end());
     return names;
   }
 
   void
-  in_section(dealii::ParameterHandler    &prm,
+  in_section(ParameterHandler            &prm,
              const std::string           &path,
              const std::function<void()> &action)
   {
     const auto sections = split_path(path);
     for (const auto &section : sections)
       prm.enter_subsection(section);
-    const auto leave = [&]() {
+    // Leaves them again, whatever happens.
+    const std::shared_ptr<void> leave(nullptr, [&](void *) {
       for (unsigned int i = 0; i < sections.size(); ++i)
         prm.leave_subsection();
-    };
+    });
     try
       {
         action();
       }
     catch (const InputError &error)
       {
-        leave();
         throw InputError(error.entry.empty() ? path : path + "/" + error.entry,
                          error.what());
       }
-    catch (...)
-      {
-        leave();
-        throw;
-      }
-    leave();
   }
 
   void
-  declare_text(dealii::ParameterHandler &prm,
-               const std::string        &entry,
-               const std::string        &documentation)
+  declare_text(ParameterHandler  &prm,
+               const std::string &entry,
+               const std::string &documentation)
   {
     prm.declare_entry(entry, "", dealii::Patterns::Anything(), documentation);
   }
 
   std::vector<double>
-  get_numbers(const dealii::ParameterHandler &prm,
-              const std::string              &entry,
-              const unsigned int              n)
+  get_numbers(const ParameterHandler &prm,
+              const std::string      &entry,
+              const unsigned int      n)
   {
     const auto values =
       dealii::Utilities::string_to_double(split_names(prm.get(entry)));

@@ -1,3 +1,5 @@
+#include <deal.II/base/patterns.h>
+
 #include <impm/materials/jaumann_law.h>
 #include <impm/materials/linear_law.h>
 #include <impm/materials/list.h>
@@ -8,57 +10,52 @@
 
 namespace impm
 {
+  namespace
+  {
+    /**
+     * A law and the groups of parameters that its constructor takes: each
+     * declares its entries and reads them back.
+     */
+    template <typename Law, typename Elasticity, typename... Others>
+    MaterialEntry
+    law(const std::string &name)
+    {
+      return {name,
+              [](dealii::ParameterHandler    &prm,
+                 const ParameterFile::Chosen &chosen) {
+                Elasticity::declare_parameters(prm, chosen);
+                prm.declare_entry("Density",
+                                  "1000",
+                                  dealii::Patterns::Double(1e-300),
+                                  "Density before any deformation (kg/m^3), "
+                                  "positive.");
+                (Others::declare_parameters(prm, chosen), ...);
+              },
+              [](dealii::ParameterHandler &prm,
+                 const MaterialSpec       &spec,
+                 PointLayout              &history) {
+                return std::make_unique<Law>(spec,
+                                             history,
+                                             Elasticity::from_parameters(prm),
+                                             Others::from_parameters(prm)...);
+              }};
+    }
+  } // namespace
+
   const std::vector<MaterialEntry> &
   material_list()
   {
     static const std::vector<MaterialEntry> list = {
-      {"log-strain elastic",
-       "Isotropic elasticity, quadratic in the logarithmic strains (Hencky).",
-       &LogStrainElastic::declare_parameters,
-       &LogStrainElastic::create},
-      {"log-strain von Mises",
-       "The same below a yield limit on the von Mises stress, with isochoric "
-       "plastic flow and linear isotropic hardening.",
-       &LogStrainVonMises::declare_parameters,
-       &LogStrainVonMises::create},
-      {"neo-Hookean",
-       "Isotropic elasticity, tau = G (b - 1) + lambda ln J 1.",
-       &CoupledNeoHookean::declare_parameters,
-       &CoupledNeoHookean::create},
-      {"decoupled neo-Hookean",
-       "Isotropic elasticity, tau = G J^(-2/3) dev b + K ln J 1 (Guilkey & "
-       "Weiss 2003, eq. 20).",
-       &DecoupledNeoHookean::declare_parameters,
-       &DecoupledNeoHookean::create,
-       &ElasticConstants::declare_chosen},
-      {"linear elastic",
-       "Stress rate C : d, linearized about the start of each step (Sulsky & "
-       "Kaul 2004, eq. 2.1.8): an elastic step is a linear problem. Not "
-       "objective: steps must turn the material little.",
-       &RateLaw::declare_elastic,
-       &RateLaw::create_elastic<LinearLaw>},
-      {"linear von Mises",
-       "The same below a yield limit (eq. 2.1.13 to 2.1.19), with linear "
-       "hardening and, if asked for, softening.",
-       &RateLaw::declare_von_mises,
-       &RateLaw::create_von_mises<LinearLaw>,
-       &BilinearHardening::declare_chosen},
-      {"Jaumann elastic",
-       "Jaumann's rate of the Cauchy stress is C : d. Objective; not "
-       "symmetric: GMRES or direct.",
-       &RateLaw::declare_elastic,
-       &RateLaw::create_elastic<JaumannLaw>},
-      {"Jaumann von Mises",
-       "The same below a yield limit, with linear hardening and, if asked for, "
-       "softening.",
-       &RateLaw::declare_von_mises,
-       &RateLaw::create_von_mises<JaumannLaw>,
-       &BilinearHardening::declare_chosen},
-      {"Newtonian fluid",
-       "Pressure from the density, viscous stress from its rate of strain "
-       "(Sulsky & Kaul 2004, eq. 2.1.7). Not symmetric: GMRES or direct.",
-       &NewtonianFluid::declare_parameters,
-       &NewtonianFluid::create}};
+      law<LogStrainElastic, ElasticConstants>("log-strain elastic"),
+      law<LogStrainVonMises, ElasticConstants, LinearHardening>(
+        "log-strain von Mises"),
+      law<NeoHookean<false>, ElasticConstants>("neo-Hookean"),
+      law<NeoHookean<true>, ElasticPair>("decoupled neo-Hookean"),
+      law<LinearLaw, ElasticConstants>("linear elastic"),
+      law<LinearLaw, ElasticConstants, BilinearHardening>("linear von Mises"),
+      law<JaumannLaw, ElasticConstants>("Jaumann elastic"),
+      law<JaumannLaw, ElasticConstants, BilinearHardening>("Jaumann von Mises"),
+      law<NewtonianFluid, NewtonianFluid::Parameters>("Newtonian fluid")};
     return list;
   }
 } // namespace impm

@@ -1,9 +1,11 @@
 #include <impm/base/exceptions.h>
+#include <impm/base/names.h>
 #include <impm/output/history.h>
 
 #include <algorithm>
 #include <iomanip>
 #include <limits>
+#include <numeric>
 
 namespace impm
 {
@@ -23,16 +25,210 @@ namespace impm
     noise_stops += before.noise_stops;
   }
 
+  namespace
+  {
+    /** The columns of a row in their order, with its values. */
+    template <int dim>
+    Figures
+    make_row(const GeometryKind geometry,
+             const StepReport  &report,
+             const double       n_points,
+             const Totals<dim> &totals,
+             const double       start_kinetic_energy,
+             const Figures     &figures)
+    {
+      Figures row = {{"step", report.step},
+                     {"time", report.time},
+                     {"dt", report.dt},
+                     {"newton_iterations", report.newton_iterations},
+                     {"linear_iterations", report.linear_iterations},
+                     {"line_searches", report.line_searches},
+                     {"step_cuts", report.step_cuts},
+                     {"points", n_points},
+                     {"active_cells", report.active_cells},
+                     {"dofs", report.dofs},
+                     {"mass", totals.mass}};
+      for (unsigned int d = 0; d < dim; ++d)
+        row.emplace_back(std::string("momentum_") + "xyz"[d],
+                         totals.momentum[d]);
+      row.insert(row.end(),
+                 {{"kinetic_energy", totals.kinetic_energy},
+                  {"strain_energy", totals.strain_energy},
+                  {"plastic_work", totals.plastic_work},
+                  {"external_work", report.external_work},
+                  {"wall_seconds", report.wall_seconds}});
+      row.insert(row.end(), figures.begin(), figures.end());
+      row.insert(row.end(),
+                 {{"residual", report.residual},
+                  {"tangent_projections", report.projections},
+                  {"solver_fallbacks", report.solver_fallbacks},
+                  {"noise_stops", report.noise_stops},
+                  {"held_cells", report.held_cells},
+                  {"limited_boxes", report.limited_boxes},
+                  {"total_energy",
+                   totals.kinetic_energy + totals.strain_energy}});
+      if (geometry != GeometryKind::axisymmetric)
+        for (unsigned int d = dim == 2 ? 2 : 0; d < 3; ++d)
+          row.emplace_back(std::string("angular_momentum_") + "xyz"[d],
+                           totals.angular_momentum[d]);
+      row.insert(row.end(),
+                 {{"stabilization_work", report.stabilization_work},
+                  {"internal_work", report.internal_work},
+                  {"transfer_loss",
+                   report.external_work - report.stabilization_work -
+                     report.internal_work -
+                     (totals.kinetic_energy - start_kinetic_energy)}});
+      return row;
+    }
+
+    /** The number of the point nearest to a place. Collective. */
+    template <int dim>
+    double
+    nearest_point(const std::vector<double> &place,
+                  const MaterialPoints<dim> &points)
+    {
+      Point<dim> center;
+      std::copy_n(place.begin(), dim, center.begin_raw());
+      double id = -1, smallest = std::numeric_limits<double>::max();
+      for (const auto &particle : points.sorted.particles)
+        {
+          const double square = particle.get_location().distance_square(center);
+          if (square < smallest)
+            {
+              smallest = square;
+              id       = particle.get_id();
+            }
+        }
+      const auto comm = points.communicator;
+      const auto rank = Utilities::MPI::min_max_avg(smallest, comm).min_index;
+      return Utilities::MPI::broadcast(comm, id, rank);
+    }
+
+    /**
+     * What a probe shows at a time, without its factor: collective. Throws
+     * InputError if it asks for what this scene does not have.
+     */
+    template <int dim>
+    std::function<double(double time)>
+    make_probe(const ProbeSpec           &spec,
+               const Scene<dim>          &scene,
+               const MaterialPoints<dim> &points,
+               const RigidBodies<dim>    &rigid,
+               const BackgroundGrid<dim> &grid)
+    {
+      using Kind           = ProbeSpec::Kind;
+      const auto component = spec.component;
+      if (spec.kind == Kind::motion)
+        {
+          for (unsigned int f = 0; f < 2 * dim; ++f)
+            if (scene.faces[f].name == spec.of)
+              return [&grid, f, component, start = grid.face_position(f)](
+                       double) {
+                return component == f / 2 ? grid.face_position(f) - start : 0.;
+              };
+          for (const auto &body : rigid.bodies)
+            if (body.spec->name == spec.of)
+              return [&body, component](const double time) {
+                return body.displacement(0, time)[component];
+              };
+        }
+
+      std::optional<PointField<dim>> field;
+      if (!spec.field.empty())
+        {
+          const std::string section = "Output/" + spec.name;
+          field =
+            make_point_field(spec.field, points, scene.output.fringe_number);
+          if (!field)
+            throw InputError(section + "/Field",
+                             "found '" + spec.field +
+                               (spec.field == "temperature" ?
+                                  "', which needs a 'Specific heat' of "
+                                  "every material" :
+                                  "', which the points of this scene do "
+                                  "not have"));
+          if (component >= field->n_components)
+            throw InputError(section + "/Component",
+                             "found " + std::to_string(component) +
+                               ", allowed is less than " +
+                               std::to_string(field->n_components));
+        }
+      const double id =
+        spec.kind == Kind::point ? nearest_point(spec.position, points) : -1;
+      return
+        [&spec, &bodies = scene.bodies, &points, component, field, id](double) {
+          if (field)
+            field->prepare();
+          const double limit    = std::numeric_limits<double>::max();
+          double       smallest = limit, largest = -limit, sum = 0, weight = 0;
+          unsigned int p = 0;
+          for (const auto &particle : points.sorted.particles)
+            {
+              const unsigned int point = p++;
+              const auto        &body =
+                bodies[static_cast<unsigned int>(points.fields(point)[0])];
+              if (spec.kind == Kind::point ?
+                    particle.get_id() != id :
+                    !spec.bodies.empty() && std::count(spec.bodies.begin(),
+                                                       spec.bodies.end(),
+                                                       body.name) == 0)
+                continue;
+              if (spec.where &&
+                  !(spec.where(points.initial_position(point).begin_raw()) > 0))
+                continue;
+              double values[9] = {};
+              if (field)
+                field->evaluate(point, particle.get_location(), values);
+              double value = values[component];
+              if (spec.kind == Kind::point && spec.field == "displacement" &&
+                  component < dim)
+                {
+                  // From the point to the place that was asked for.
+                  const auto F     = deformation_gradient(points, point);
+                  const auto start = points.initial_position(point);
+                  for (unsigned int d = 0; d < dim; ++d)
+                    value += (F[component][d] - (component == d ? 1 : 0)) *
+                             (spec.position[d] - start[d]);
+                }
+              if (spec.kind == Kind::extent)
+                {
+                  // Half the box that the point stands for, stretched by F.
+                  const auto    F      = deformation_gradient(points, point);
+                  const double *domain = points.fields(point) +
+                                         points.layout.offset("initial_domain");
+                  value = particle.get_location()[component];
+                  for (unsigned int d = 0; d < dim; ++d)
+                    value += 0.5 * std::abs(F[component][d]) * domain[d];
+                }
+              smallest = std::min(smallest, value);
+              largest  = std::max(largest, value);
+              sum += value * points.initial_volume(point);
+              weight += points.initial_volume(point);
+            }
+          const auto comm = points.communicator;
+          if (spec.kind == Kind::mean)
+            return Utilities::MPI::sum(sum, comm) /
+                   Utilities::MPI::sum(weight, comm);
+          if (spec.kind == Kind::smallest)
+            return Utilities::MPI::min(smallest, comm);
+          largest = Utilities::MPI::max(largest, comm);
+          return spec.kind == Kind::spread ?
+                   largest - Utilities::MPI::min(smallest, comm) :
+                   largest;
+        };
+    }
+  } // namespace
+
   template <int dim>
   Totals<dim>
   total(const MaterialPoints<dim> &points)
   {
-    std::vector<double> sums(7 + dim);
-    unsigned int        p = 0;
+    Totals<dim>  totals;
+    unsigned int p = 0;
     for (const auto &particle : points.sorted.particles)
       {
         const double mass = points.mass(p);
-        sums[0] += mass;
+        totals.mass += mass;
         if (points.offset_velocity > 0)
           {
             Tensor<1, 3> x, v;
@@ -40,149 +236,60 @@ namespace impm
               {
                 x[d] = particle.get_location()[d];
                 v[d] = points.fields(p)[points.offset_velocity + d];
-                sums[7 + d] += mass * v[d];
+                totals.momentum[d] += mass * v[d];
               }
-            sums[1] += 0.5 * mass * v.norm_square();
-            const auto spin = cross_product_3d(x, v);
-            for (unsigned int d = 0; d < 3; ++d)
-              sums[4 + d] += mass * spin[d];
+            totals.kinetic_energy += 0.5 * mass * v.norm_square();
+            totals.angular_momentum += mass * cross_product_3d(x, v);
           }
         const auto energy =
           points.material(p).energy(deformation_gradient(points, p),
                                     points.fields(p) + points.offset_history);
-        sums[2] += points.initial_volume(p) * energy.stored;
-        sums[3] += points.initial_volume(p) * energy.dissipated;
+        totals.strain_energy += points.initial_volume(p) * energy.stored;
+        totals.plastic_work += points.initial_volume(p) * energy.dissipated;
         ++p;
       }
-    Utilities::MPI::sum(sums, points.communicator, sums);
-    Totals<dim> totals;
-    totals.mass           = sums[0];
-    totals.kinetic_energy = sums[1];
-    totals.strain_energy  = sums[2];
-    totals.plastic_work   = sums[3];
-    for (unsigned int d = 0; d < dim; ++d)
-      totals.momentum[d] = sums[7 + d];
-    for (unsigned int d = 0; d < 3; ++d)
-      totals.angular_momentum[d] = sums[4 + d];
+    const auto add_ranks = [&](auto &sum) {
+      sum = Utilities::MPI::sum(sum, points.communicator);
+    };
+    add_ranks(totals.mass);
+    add_ranks(totals.momentum);
+    add_ranks(totals.angular_momentum);
+    add_ranks(totals.kinetic_energy);
+    add_ranks(totals.strain_energy);
+    add_ranks(totals.plastic_work);
     return totals;
   }
 
   template <int dim>
   std::vector<std::string>
-  history_columns(const OutputSpec &output, const GeometryKind geometry)
+  History<dim>::column_names(const Scene<dim> &scene)
   {
-    std::vector<std::string> names = {"step",
-                                      "time",
-                                      "dt",
-                                      "newton_iterations",
-                                      "linear_iterations",
-                                      "line_searches",
-                                      "step_cuts",
-                                      "points",
-                                      "active_cells",
-                                      "dofs",
-                                      "mass"};
-    for (unsigned int d = 0; d < dim; ++d)
-      names.push_back(std::string("momentum_") + "xyz"[d]);
-    names.insert(names.end(),
-                 {"kinetic_energy",
-                  "strain_energy",
-                  "plastic_work",
-                  "external_work",
-                  "wall_seconds"});
-    for (const auto &probe : output.probes)
-      names.push_back(probe.name);
-    for (const auto &reaction : output.reactions)
-      names.push_back(reaction.name);
-    names.insert(names.end(),
-                 {"residual",
-                  "tangent_projections",
-                  "solver_fallbacks",
-                  "noise_stops",
-                  "held_cells",
-                  "limited_boxes",
-                  "total_energy"});
-    if (geometry != GeometryKind::axisymmetric)
-      for (unsigned int d = dim == 2 ? 2 : 0; d < 3; ++d)
-        names.push_back(std::string("angular_momentum_") + "xyz"[d]);
-    names.insert(names.end(),
-                 {"stabilization_work", "internal_work", "transfer_loss"});
+    Figures figures;
+    for (const auto &probe : scene.output.probes)
+      figures.emplace_back(probe.name, 0);
+    for (const auto &reaction : scene.output.reactions)
+      figures.emplace_back(reaction.name, 0);
+    std::vector<std::string> names;
+    for (const auto &column :
+         make_row<dim>(scene.geometry, {}, 0, {}, 0, figures))
+      names.push_back(column.first);
     return names;
   }
 
   template <int dim>
-  History<dim>::History(const OutputSpec          &output,
-                        const Faces<dim>          &faces,
-                        const Bodies<dim>         &bodies,
+  History<dim>::History(const Scene<dim>          &scene,
                         const MaterialPoints<dim> &points,
                         const RigidBodies<dim>    &rigid,
                         const BackgroundGrid<dim> &grid)
-    : columns(history_columns<dim>(output, points.layout.geometry))
-    , output(output)
-    , faces(faces)
-    , bodies(bodies)
+    : output(scene.output)
     , points(points)
-    , rigid(rigid)
-    , grid(grid)
-    , reactions(output.reactions.size())
+    , reactions(scene.output.reactions.size())
     , start_kinetic_energy(total(points).kinetic_energy)
   {
-    for (unsigned int f = 0; f < 2 * dim; ++f)
-      face_start[f] = grid.face_position(f);
-    for (const auto &probe : output.probes)
-      {
-        Follower follower;
-        if (!probe.field.empty())
-          {
-            const std::string entry = "Output/" + probe.name + "/Field";
-            follower.field =
-              make_point_field(probe.field, points, output.fringe_number);
-            if (!follower.field)
-              throw InputError(entry,
-                               "found '" + probe.field +
-                                 (probe.field == "temperature" ?
-                                    "', which needs a 'Specific heat' of "
-                                    "every material" :
-                                    "', which the points of this scene do "
-                                    "not have"));
-            if (probe.component >= follower.field->n_components)
-              throw InputError("Output/" + probe.name + "/Component",
-                               "found " + std::to_string(probe.component) +
-                                 ", allowed is less than " +
-                                 std::to_string(follower.field->n_components));
-          }
-        if (probe.kind == ProbeSpec::Kind::point)
-          {
-            struct
-            {
-              double distance = std::numeric_limits<double>::max();
-              int    rank;
-            } mine, nearest;
-            mine.rank = Utilities::MPI::this_mpi_process(points.communicator);
-            double id = -1;
-            for (const auto &particle : points.sorted.particles)
-              {
-                double square = 0;
-                for (unsigned int d = 0; d < dim; ++d)
-                  square +=
-                    std::pow(particle.get_location()[d] - probe.position[d], 2);
-                if (square < mine.distance)
-                  {
-                    mine.distance = square;
-                    id            = particle.get_id();
-                  }
-              }
-            MPI_Allreduce(&mine,
-                          &nearest,
-                          1,
-                          MPI_DOUBLE_INT,
-                          MPI_MINLOC,
-                          points.communicator);
-            follower.id =
-              Utilities::MPI::broadcast(points.communicator, id, nearest.rank);
-          }
-        followers.push_back(follower);
-      }
+    rows.names = column_names(scene);
+    rows.columns.resize(rows.names.size());
+    for (const auto &probe : scene.output.probes)
+      probes.push_back(make_probe(probe, scene, points, rigid, grid));
   }
 
   template <int dim>
@@ -192,9 +299,7 @@ namespace impm
     if (Utilities::MPI::this_mpi_process(points.communicator) != 0)
       return;
     file.open(directory + "/history.csv");
-    for (const auto &name : columns)
-      file << (name == columns.front() ? "" : ",") << name;
-    file << std::endl;
+    file << join(rows.names, ",") << std::endl;
     if (!file)
       throw SystemError("cannot write '" + directory + "/history.csv'");
   }
@@ -206,98 +311,15 @@ namespace impm
   {
     for (unsigned int r = 0; r < reactions.size(); ++r)
       {
-        const auto &spec = output.reactions[r];
-        double      norm = 0;
-        for (const double d : spec.direction)
-          norm += d * d;
+        const auto  &spec = output.reactions[r];
+        const auto  &n    = spec.direction;
+        const double norm =
+          std::sqrt(std::inner_product(n.begin(), n.end(), n.begin(), 0.));
         // What the carrier exerts balances the material: the force on it is
         // the opposite.
-        reactions[r] =
-          -spec.factor / std::sqrt(norm) *
-          problem.constraints.sum_over(spec.on, forces, spec.direction);
+        reactions[r] = -spec.factor / norm *
+                       problem.constraints.sum_over(spec.on, forces, n);
       }
-  }
-
-  template <int dim>
-  double
-  History<dim>::probe(const unsigned int index, const double time) const
-  {
-    using Kind            = ProbeSpec::Kind;
-    const auto &spec      = output.probes[index];
-    const auto &follower  = followers[index];
-    const auto  component = spec.component;
-
-    if (spec.kind == Kind::motion)
-      {
-        for (unsigned int f = 0; f < 2 * dim; ++f)
-          if (faces[f].name == spec.of)
-            return component == f / 2 ? grid.face_position(f) - face_start[f] :
-                                        0.;
-        for (unsigned int b = 0; b < rigid.size(); ++b)
-          if (rigid.spec(b).name == spec.of)
-            return rigid.displacement(b, 0, time)[component];
-      }
-
-    if (follower.field)
-      follower.field->prepare();
-    const double limit    = std::numeric_limits<double>::max();
-    double       smallest = limit, largest = -limit, sum = 0, weight = 0;
-    unsigned int p = 0;
-    for (const auto &particle : points.sorted.particles)
-      {
-        const unsigned int point = p++;
-        const auto        &body =
-          bodies[static_cast<unsigned int>(points.fields(point)[0])];
-        if (spec.kind == Kind::point ?
-              particle.get_id() != follower.id :
-              !spec.bodies.empty() &&
-                std::find(spec.bodies.begin(), spec.bodies.end(), body.name) ==
-                  spec.bodies.end())
-          continue;
-        if (spec.where)
-          {
-            const auto start = points.initial_position(point);
-            if (!(spec.where(start.begin_raw()) > 0))
-              continue;
-          }
-        double values[9] = {};
-        if (follower.field)
-          follower.field->evaluate(point, particle.get_location(), values);
-        double value = values[component];
-        if (spec.kind == Kind::point && spec.field == "displacement" &&
-            component < dim)
-          {
-            // From the point to the place that was asked for.
-            const auto F     = deformation_gradient(points, point);
-            const auto start = points.initial_position(point);
-            for (unsigned int d = 0; d < dim; ++d)
-              value += (F[component][d] - (component == d ? 1 : 0)) *
-                       (spec.position[d] - start[d]);
-          }
-        if (spec.kind == Kind::extent)
-          {
-            // Half the box that the point stands for, stretched by F.
-            const auto    F = deformation_gradient(points, point);
-            const double *domain =
-              points.fields(point) + points.layout.offset("initial_domain");
-            value = particle.get_location()[component];
-            for (unsigned int d = 0; d < dim; ++d)
-              value += 0.5 * std::abs(F[component][d]) * domain[d];
-          }
-        smallest = std::min(smallest, value);
-        largest  = std::max(largest, value);
-        sum += value * points.initial_volume(point);
-        weight += points.initial_volume(point);
-      }
-    const auto comm = points.communicator;
-    if (spec.kind == Kind::mean)
-      return Utilities::MPI::sum(sum, comm) / Utilities::MPI::sum(weight, comm);
-    if (spec.kind == Kind::smallest)
-      return Utilities::MPI::min(smallest, comm);
-    largest = Utilities::MPI::max(largest, comm);
-    return spec.kind == Kind::spread ?
-             largest - Utilities::MPI::min(smallest, comm) :
-             largest;
   }
 
   template <int dim>
@@ -307,76 +329,34 @@ namespace impm
     const auto totals   = total(points);
     const auto n_points = points.sorted.n_global();
     figures.clear();
-    for (unsigned int i = 0; i < output.probes.size(); ++i)
-      figures.emplace_back(output.probes[i].name,
-                           output.probes[i].factor * probe(i, report.time));
+    for (unsigned int i = 0; i < probes.size(); ++i)
+      {
+        const auto &spec = output.probes[i];
+        figures.emplace_back(spec.name, spec.factor * probes[i](report.time));
+      }
     for (unsigned int i = 0; i < reactions.size(); ++i)
       figures.emplace_back(output.reactions[i].name, reactions[i]);
     if (Utilities::MPI::this_mpi_process(points.communicator) != 0)
       return;
 
-    std::vector<double> row;
-    const auto          add = [&](const double value) { row.push_back(value); };
-    add(report.step);
-    add(report.time);
-    add(report.dt);
-    add(report.newton_iterations);
-    add(report.linear_iterations);
-    add(report.line_searches);
-    add(report.step_cuts);
-    add(n_points);
-    add(report.active_cells);
-    add(report.dofs);
-    add(totals.mass);
-    for (unsigned int d = 0; d < dim; ++d)
-      add(totals.momentum[d]);
-    add(totals.kinetic_energy);
-    add(totals.strain_energy);
-    add(totals.plastic_work);
-    add(report.external_work);
-    add(report.wall_seconds);
-    for (const auto &figure : figures)
-      add(figure.second);
-    add(report.residual);
-    add(report.projections);
-    add(report.solver_fallbacks);
-    add(report.noise_stops);
-    add(report.held_cells);
-    add(report.limited_boxes);
-    add(totals.kinetic_energy + totals.strain_energy);
-    if (points.layout.geometry != GeometryKind::axisymmetric)
-      for (unsigned int d = dim == 2 ? 2 : 0; d < 3; ++d)
-        add(totals.angular_momentum[d]);
-    add(report.stabilization_work);
-    add(report.internal_work);
-    add(report.external_work - report.stabilization_work -
-        report.internal_work - totals.kinetic_energy + start_kinetic_energy);
-
+    const auto row = make_row(points.layout.geometry,
+                              report,
+                              n_points,
+                              totals,
+                              start_kinetic_energy,
+                              figures);
     file << std::setprecision(12);
     for (unsigned int i = 0; i < row.size(); ++i)
-      file << (i > 0 ? "," : "") << row[i];
+      {
+        file << (i > 0 ? "," : "") << row[i].second;
+        if (remembers_rows)
+          rows.columns[i].push_back(row[i].second);
+      }
     file << std::endl;
-    if (remembers)
-      rows.push_back(std::move(row));
     if (!file)
       throw SystemError("cannot write the history (disk full?)");
   }
 
-  template <int dim>
-  std::vector<double>
-  History<dim>::column(const std::string &name) const
-  {
-    const auto          i = std::find(columns.begin(), columns.end(), name);
-    std::vector<double> values;
-    for (const auto &row : rows)
-      values.push_back(row.at(i - columns.begin()));
-    return values;
-  }
-
-  template std::vector<std::string>
-  history_columns<2>(const OutputSpec &, GeometryKind);
-  template std::vector<std::string>
-  history_columns<3>(const OutputSpec &, GeometryKind);
   template class History<2>;
   template class History<3>;
   template Totals<2>

@@ -9,7 +9,6 @@
 #include <impm/base/files.h>
 #include <impm/output/pictures.h>
 
-#include <algorithm>
 #include <fstream>
 #include <sstream>
 
@@ -19,55 +18,28 @@ namespace impm
 
   namespace
   {
+    using Kind = DataComponentInterpretation::DataComponentInterpretation;
+
     /** Points as vertices in space, so that tensors are 3 x 3 in 2D, too. */
-    class PointPatches : public DataOutInterface<0, 3>
+    struct PointPatches
     {
-    public:
       std::vector<DataOutBase::Patch<0, 3>> patches;
       std::vector<std::string>              names;
-      std::vector<
-        std::tuple<unsigned int,
-                   unsigned int,
-                   std::string,
-                   DataComponentInterpretation::DataComponentInterpretation>>
-        ranges;
+      std::vector<std::tuple<unsigned int, unsigned int, std::string, Kind>>
+                            ranges; ///< of vectors and tensors
+      DataOutBase::VtkFlags flags;
 
       void
-      add_names(const std::string &name, const unsigned int n_components)
+      write_vtu(std::ostream &out) const
       {
-        if (n_components > 1)
-          ranges.emplace_back(
-            names.size(),
-            names.size() + n_components - 1,
-            name,
-            n_components == 3 ?
-              DataComponentInterpretation::component_is_part_of_vector :
-              DataComponentInterpretation::component_is_part_of_tensor);
-        for (unsigned int c = 0; c < n_components; ++c)
-          names.push_back(name);
+        DataOutBase::write_vtu(patches, names, ranges, flags, out);
       }
 
-    private:
-      const std::vector<DataOutBase::Patch<0, 3>> &
-      get_patches() const override
+      void
+      write_pvtu_record(std::ostream                   &out,
+                        const std::vector<std::string> &pieces) const
       {
-        return patches;
-      }
-
-      std::vector<std::string>
-      get_dataset_names() const override
-      {
-        return names;
-      }
-
-      std::vector<
-        std::tuple<unsigned int,
-                   unsigned int,
-                   std::string,
-                   DataComponentInterpretation::DataComponentInterpretation>>
-      get_nonscalar_data_ranges() const override
-      {
-        return ranges;
+        DataOutBase::write_pvtu_record(out, pieces, names, ranges, flags);
       }
     };
 
@@ -81,36 +53,24 @@ namespace impm
     {
       const unsigned int n    = Utilities::MPI::n_mpi_processes(communicator);
       const unsigned int rank = Utilities::MPI::this_mpi_process(communicator);
-      const auto         name = [&](const unsigned int r) {
-        return n == 1 ? base + ".vtu" : base + "." + std::to_string(r) + ".vtu";
-      };
-      std::ofstream file(directory + "/" + name(rank));
+      std::vector<std::string> pieces;
+      for (unsigned int r = 0; r < n; ++r)
+        pieces.push_back(base + (n == 1 ? "" : "." + std::to_string(r)) +
+                         ".vtu");
+      const auto    path = directory + "/" + pieces[rank];
+      std::ofstream file(path);
       writer.write_vtu(file);
       file.close();
       if (!file)
-        throw SystemError("cannot write '" + directory + "/" + name(rank) +
-                          "'");
+        throw SystemError("cannot write '" + path + "'");
       if (n == 1)
-        return name(0);
-      std::vector<std::string> pieces;
-      for (unsigned int r = 0; r < n; ++r)
-        pieces.push_back(name(r));
+        return pieces[0];
       if (rank == 0)
         {
           std::ofstream record(directory + "/" + base + ".pvtu");
           writer.write_pvtu_record(record, pieces);
         }
       return base + ".pvtu";
-    }
-
-    template <int dim>
-    Point<3>
-    in_space(const Point<dim> &point)
-    {
-      Point<3> in_space;
-      for (unsigned int d = 0; d < dim; ++d)
-        in_space[d] = point[d];
-      return in_space;
     }
   } // namespace
 
@@ -137,17 +97,31 @@ namespace impm
     const std::string number         = Utilities::int_to_string(n_written++, 5);
     const auto        comm           = grid.communicator;
     const auto        discretization = grid.discretization();
+    const auto        save = [&](const std::string &name, const auto &writer) {
+      files[name].emplace_back(
+        time, write_vtu(writer, directory, name + "_" + number, comm));
+    };
 
     PointPatches writer;
+    auto        &names = writer.names;
     for (const auto &field : fields)
       {
         field.prepare();
-        writer.add_names(field.name, field.n_components);
+        const unsigned int n = field.n_components;
+        if (n > 1)
+          writer.ranges.emplace_back(names.size(),
+                                     names.size() + n - 1,
+                                     field.name,
+                                     n == 3 ?
+                                       Kind::component_is_part_of_vector :
+                                       Kind::component_is_part_of_tensor);
+        names.insert(names.end(), n, field.name);
       }
     DataOutBase::Patch<0, 3> patch;
-    patch.data.reinit(writer.names.size(), 1);
+    patch.data.reinit(names.size(), 1);
     const auto add = [&](const Point<dim> &position) {
-      patch.vertices[0] = in_space(position);
+      for (unsigned int d = 0; d < dim; ++d)
+        patch.vertices[0][d] = position[d];
       patch.patch_index = writer.patches.size();
       writer.patches.push_back(patch);
     };
@@ -167,75 +141,62 @@ namespace impm
       }
     // Rigid points carry nothing but their place; "body" counts on from the
     // deformable ones as -1, -2, ...
-    for (unsigned int b = 0; b < rigid.size(); ++b)
-      for (const auto &particle : rigid.points(b).particles)
+    for (unsigned int b = 0; b < rigid.bodies.size(); ++b)
+      for (const auto &particle : rigid.bodies[b].points->particles)
         {
-          for (unsigned int i = 0; i < writer.names.size(); ++i)
-            patch.data(i, 0) =
-              writer.names[i] == "body" ? -1. - static_cast<double>(b) : 0.;
+          for (unsigned int i = 0; i < names.size(); ++i)
+            patch.data(i, 0) = names[i] == "body" ? -1. - b : 0.;
           add(particle.get_location());
         }
-    DataOutBase::VtkFlags flags;
-    flags.time = time;
-    writer.set_flags(flags);
-    point_files.emplace_back(
-      time, write_vtu(writer, directory, "particles_" + number, comm));
+    writer.flags.time = time;
+    save("particles", writer);
 
     DataOut<dim> grid_writer;
-    grid_writer.set_flags(flags);
+    grid_writer.set_flags(writer.flags);
     grid_writer.attach_dof_handler(discretization->dof_handler());
-    const std::vector<DataComponentInterpretation::DataComponentInterpretation>
-      vector(dim, DataComponentInterpretation::component_is_part_of_vector);
-    Vector displacement;
+    const auto add_vector = [&](const Vector &v, const std::string &name) {
+      grid_writer.add_data_vector(
+        discretization->dof_handler(),
+        v,
+        std::vector<std::string>(dim, name),
+        std::vector<Kind>(dim, Kind::component_is_part_of_vector));
+    };
+    Vector increment;
     if (u != nullptr)
       {
-        displacement = *u;
-        displacement.update_ghost_values();
-        grid_writer.add_data_vector(
-          discretization->dof_handler(),
-          displacement,
-          std::vector<std::string>(dim, "displacement_increment"),
-          vector);
+        increment = *u;
+        increment.update_ghost_values();
+        add_vector(increment, "displacement_increment");
       }
     dealii::Vector<float> level(grid.triangulation.n_active_cells()),
-      owner(level.size()), n_points(level.size());
+      rank(level.size()), n_points(level.size());
+    rank = Utilities::MPI::this_mpi_process(comm);
     for (const auto &cell : grid.triangulation.active_cell_iterators())
-      if (cell->is_locally_owned())
-        {
-          level[cell->active_cell_index()] = cell->level();
-          owner[cell->active_cell_index()] = cell->subdomain_id();
-        }
+      level[cell->active_cell_index()] = cell->level();
     for (const auto &particle : points.sorted.particles)
       ++n_points[particle.get_surrounding_cell()->active_cell_index()];
     grid_writer.add_data_vector(level, "level");
-    grid_writer.add_data_vector(owner, "rank");
+    grid_writer.add_data_vector(rank, "rank");
     grid_writer.add_data_vector(n_points, "points");
     if (!grid.is_lagrangian)
       grid_writer.build_patches(*grid.mapping);
     else
       {
         const Vector &total = grid.nodal_state().displacement;
-        grid_writer.add_data_vector(discretization->dof_handler(),
-                                    total,
-                                    std::vector<std::string>(dim,
-                                                             "displacement"),
-                                    vector);
+        add_vector(total, "displacement");
         grid_writer.build_patches(
           MappingQ1Eulerian<dim, Vector>(discretization->dof_handler(), total));
       }
-    grid_files.emplace_back(
-      time, write_vtu(grid_writer, directory, "grid_" + number, comm));
+    save("grid", grid_writer);
 
     // All the pieces are on disk before a record names them.
     MPI_Barrier(comm);
     if (Utilities::MPI::this_mpi_process(comm) == 0)
-      for (const auto &[name, files] :
-           {std::make_pair("/particles.pvd", &point_files),
-            std::make_pair("/grid.pvd", &grid_files)})
+      for (const auto &[name, times_and_names] : files)
         {
           std::ostringstream record;
-          DataOutBase::write_pvd_record(record, *files);
-          replace_file(directory + name, record.str());
+          DataOutBase::write_pvd_record(record, times_and_names);
+          replace_file(directory + "/" + name + ".pvd", record.str());
         }
   }
 

@@ -4,33 +4,35 @@
 #include <impm/base/files.h>
 #include <impm/output/summary.h>
 
+#include <boost/format.hpp>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <cstdio>
 #include <iomanip>
 #include <sstream>
 
 namespace impm
 {
+  using namespace dealii;
+
   void
   RunSummary::write(const std::string &directory,
                     const MPI_Comm     communicator) const
   {
-    dealii::Utilities::System::MemoryStats memory;
-    dealii::Utilities::System::get_memory_stats(memory);
-    const auto peak = dealii::Utilities::MPI::sum(memory.VmHWM, communicator);
-    if (dealii::Utilities::MPI::this_mpi_process(communicator) != 0)
+    Utilities::System::MemoryStats memory;
+    Utilities::System::get_memory_stats(memory);
+    const auto peak = Utilities::MPI::sum(memory.VmHWM, communicator);
+    if (Utilities::MPI::this_mpi_process(communicator) != 0)
       return;
 
     nlohmann::ordered_json json;
-    json["scene"]    = scene;
-    json["status"]   = status;
-    json["version"]  = version;
-    json["revision"] = git_revision;
-    json["dim"]      = dim;
-    json["ranks"]    = dealii::Utilities::MPI::n_mpi_processes(communicator);
-    json["points"]   = points;
+    json["scene"]           = scene;
+    json["status"]          = status;
+    json["version"]         = version;
+    json["revision"]        = git_revision;
+    json["dim"]             = dim;
+    json["ranks"]           = Utilities::MPI::n_mpi_processes(communicator);
+    json["points"]          = points;
     json["bytes_per_point"] = bytes_per_point;
     json["steps"]           = steps;
     json["time"]            = time;
@@ -67,26 +69,20 @@ namespace impm
   RunSummary::phase_table() const
   {
     std::string table;
-    char        line[100];
-    double      known = 0;
-    const auto  add   = [&](const std::string &name, const double seconds) {
-      std::snprintf(line,
-                    sizeof(line),
-                    "  %-24s %9.3f s %5.1f %%\n",
-                    name.c_str(),
-                    seconds,
-                    100 * seconds / wall_seconds);
-      table += line;
+    double      rest = wall_seconds;
+    const auto  add  = [&](const std::string &name, const double seconds) {
+      table += (boost::format("\n  %-24s %9.3f s %5.1f %%") % name % seconds %
+                (100 * seconds / wall_seconds))
+                 .str();
     };
     for (const auto &[name, seconds] : phases)
       {
         add(name, seconds);
-        known += seconds;
+        rest -= seconds;
       }
-    add("everything else", wall_seconds - known);
+    add("everything else", rest);
     add("all", wall_seconds);
-    table.pop_back();
-    return table;
+    return table.substr(1);
   }
 
   std::string

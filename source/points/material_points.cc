@@ -1,12 +1,13 @@
 #include <deal.II/base/mpi.h>
 
-#include <impm/balance/terms/point_traction.h>
+#include <impm/balance/terms/loads.h>
 #include <impm/base/exceptions.h>
 #include <impm/points/material_points.h>
-#include <impm/scene/seeding.h>
+
+#include <boost/lexical_cast.hpp>
 
 #include <algorithm>
-#include <sstream>
+#include <utility>
 
 namespace impm
 {
@@ -21,10 +22,8 @@ namespace impm
     particles.signals.particle_lost.connect(
       [this](const typename Particles::ParticleIterator<dim> &particle,
              const typename Triangulation<dim>::active_cell_iterator &) {
-        std::ostringstream place;
-        place << "point " << particle->get_id() << " at "
-              << particle->get_location();
-        lost = place.str();
+        lost = "point " + std::to_string(particle->get_id()) + " at " +
+               boost::lexical_cast<std::string>(particle->get_location());
       });
   }
 
@@ -50,8 +49,7 @@ namespace impm
                                   seed.unit_position,
                                   id++,
                                   seed.cell,
-                                  ArrayView<const double>(values.data(),
-                                                          values.size()));
+                                  make_array_view(std::as_const(values)));
       }
     particles.update_cached_numbers();
   }
@@ -70,23 +68,13 @@ namespace impm
       return;
     // Some rank knows a name for one of them, or none does: a particle that
     // vanished on its way between ranks gives no signal.
-    const auto  names = Utilities::MPI::all_gather(grid.communicator, lost);
     std::string named = "none of them was seen leaving";
-    for (const auto &name : names)
+    for (const auto &name : Utilities::MPI::all_gather(grid.communicator, lost))
       if (!name.empty())
         named = name + " is one of them";
     throw ComputationError(std::to_string(missing) +
                            " points have left the domain: " + named);
   }
-
-  namespace
-  {
-    unsigned int
-    offset_or_zero(const PointLayout &layout, const std::string &name)
-    {
-      return layout.has(name) ? layout.offset(name) : 0;
-    }
-  } // namespace
 
   template <int dim>
   MaterialPoints<dim>::MaterialPoints(const PointLayout         &layout,
@@ -98,78 +86,51 @@ namespace impm
     , sorted(grid, layout.size())
     , offset_deformation(layout.offset("deformation_gradient"))
     , offset_history(layout.size() - history.size())
-    , offset_velocity(offset_or_zero(layout, "velocity"))
-    , offset_acceleration(offset_or_zero(layout, "acceleration"))
-    , offset_affine(offset_or_zero(layout, "velocity_gradient_x"))
-    , offset_stress(offset_or_zero(layout, "stress"))
-    , offset_initial_position(offset_or_zero(layout, "initial_position"))
+    , offset_velocity(layout.find("velocity").value_or(0))
+    , offset_acceleration(layout.find("acceleration").value_or(0))
+    , offset_affine(layout.find("velocity_gradient_x").value_or(0))
+    , offset_stress(layout.find("stress").value_or(0))
+    , offset_initial_position(layout.find("initial_position").value_or(0))
     , history_layout(history)
     , communicator(grid.communicator)
   {
-    Tensor<2, 3> identity;
-    for (unsigned int d = 0; d < 3; ++d)
-      identity[d][d] = 1;
-
-    for (unsigned int b = 0; b < bodies.size(); ++b)
+    const auto copy = [](const Tensor<1, dim> &from, double *to) {
+      std::copy_n(from.begin_raw(), dim, to);
+    };
+    for (const auto &body : bodies)
       {
-        const auto &body = bodies[b];
+        const auto fill = [&](const Seed<dim> &seed, double *values) {
+          std::fill_n(values, layout.size(), 0.);
+          values[layout.offset("body")]           = materials.size();
+          values[layout.offset("initial_volume")] = seed.volume;
+          layout.store_tensor(unit_symmetric_tensor<3>(),
+                              values + offset_deformation);
+          if (body.velocity && offset_velocity > 0)
+            for (unsigned int c = 0; c < dim; ++c)
+              {
+                values[offset_velocity + c] =
+                  body.velocity->value(seed.position, c);
+                // Else the grid would get less spin than the points have.
+                if (offset_affine > 0)
+                  copy(body.velocity->gradient(seed.position, c),
+                       values + offset_affine + dim * c);
+              }
+          if (offset_initial_position > 0)
+            copy(seed.position, values + offset_initial_position);
+          if (const auto offset = layout.find("initial_domain"))
+            copy(seed.domain, values + *offset);
+          for (const auto &traction : tractions)
+            if (traction.body == body.name)
+              values[layout.offset(traction_field(traction))] =
+                traction_area(traction, seed);
+          body.material->initialize_history(values + offset_history);
+        };
+        if (!body.rigid)
+          sorted.insert(seed_body(bodies, body, layout.geometry, grid), fill);
         materials.push_back(body.material);
-        if (body.rigid)
-          continue;
-        sorted.insert(
-          seed_body(bodies, body, layout.geometry, grid),
-          [&](const Seed<dim> &seed, double *values) {
-            std::fill_n(values, layout.size(), 0.);
-            values[layout.offset("body")]           = b;
-            values[layout.offset("initial_volume")] = seed.volume;
-            layout.store_tensor(identity, values + offset_deformation);
-            if (offset_velocity > 0)
-              {
-                dealii::Vector<double> velocity(dim);
-                if (body.velocity)
-                  body.velocity->vector_value(seed.position, velocity);
-                std::copy(velocity.begin(),
-                          velocity.end(),
-                          values + offset_velocity);
-                // Without it the grid would get less spin than the points have.
-                if (body.velocity && offset_affine > 0)
-                  for (unsigned int c = 0; c < dim; ++c)
-                    {
-                      const auto gradient =
-                        body.velocity->gradient(seed.position, c);
-                      std::copy_n(gradient.begin_raw(),
-                                  dim,
-                                  values + offset_affine + dim * c);
-                    }
-              }
-            for (unsigned int d = 0; d < dim; ++d)
-              {
-                if (layout.has("initial_position"))
-                  values[layout.offset("initial_position") + d] =
-                    seed.position[d];
-                if (layout.has("initial_domain"))
-                  values[layout.offset("initial_domain") + d] = seed.domain[d];
-              }
-            for (const auto &traction : tractions)
-              if (traction.body == body.name)
-                values[layout.offset(traction_field(traction))] =
-                  traction_area(traction, seed);
-            body.material->initialize_history(values + offset_history);
-          });
       }
     sort();
-    check_tractions(tractions, *this);
-  }
-
-  template <int dim>
-  bool
-  MaterialPoints<dim>::have_temperature() const
-  {
-    return std::all_of(materials.begin(),
-                       materials.end(),
-                       [](const auto &material) {
-                         return !material || material->specific_heat > 0;
-                       });
+    count_points_under_tractions(tractions, *this);
   }
 
   template <int dim>
@@ -182,32 +143,23 @@ namespace impm
       data.push_back(particle.get_properties().data());
   }
 
-  template class SortedParticles<2>;
-  template class SortedParticles<3>;
   template <int dim>
   double
-  largest_speed(const MaterialPoints<dim> &points)
+  MaterialPoints<dim>::largest_speed() const
   {
     double wave = 0, square = 0;
-    for (unsigned int p = 0; p < points.size(); ++p)
+    for (unsigned int p = 0; p < size(); ++p)
       {
-        wave = std::max(wave, points.material(p).wave_speed());
-        if (points.offset_velocity == 0)
-          continue;
-        double sum = 0;
-        for (unsigned int d = 0; d < dim; ++d)
-          sum += std::pow(points.fields(p)[points.offset_velocity + d], 2);
-        square = std::max(square, sum);
+        wave = std::max(wave, material(p).wave_speed());
+        if (offset_velocity > 0)
+          square = std::max(square, velocity(p).norm_square());
       }
-    wave   = Utilities::MPI::max(wave, points.communicator);
-    square = Utilities::MPI::max(square, points.communicator);
-    return wave + std::sqrt(square);
+    return Utilities::MPI::max(wave, communicator) +
+           std::sqrt(Utilities::MPI::max(square, communicator));
   }
 
-  template double
-  largest_speed(const MaterialPoints<2> &);
-  template double
-  largest_speed(const MaterialPoints<3> &);
+  template class SortedParticles<2>;
+  template class SortedParticles<3>;
   template class MaterialPoints<2>;
   template class MaterialPoints<3>;
 } // namespace impm

@@ -1,24 +1,23 @@
-#include <impm/base/exceptions.h>
 #include <impm/base/files.h>
-#include <impm/run/checkpoint.h>
+#include <impm/run/simulation.h>
 
 #include <nlohmann/json.hpp>
 
 #include <filesystem>
-#include <fstream>
 
 namespace impm
 {
+  using namespace dealii;
+
   template <int dim>
   void
-  write_checkpoint(const std::string   &directory,
-                   const RunState      &state,
-                   BackgroundGrid<dim> &grid,
-                   MaterialPoints<dim> &points)
+  Simulation<dim>::save_last_good_state(const std::string &reason)
   {
+    console.finish();
+    picture(false);
+
     const std::string folder = directory + "/checkpoint";
-    const bool        first =
-      dealii::Utilities::MPI::this_mpi_process(grid.communicator) == 0;
+    const bool  first = Utilities::MPI::this_mpi_process(communicator) == 0;
     std::string name;
     if (first)
       {
@@ -27,17 +26,15 @@ namespace impm
         std::ifstream(folder + "/last_good") >> last;
         name = last == "a" ? "b" : "a";
       }
-    name = dealii::Utilities::MPI::broadcast(grid.communicator, name);
-
+    name = Utilities::MPI::broadcast(communicator, name);
     points.sorted.particles.prepare_for_serialization();
     grid.triangulation.save(folder + "/" + name + ".grid");
     if (!first)
       return;
-    nlohmann::ordered_json json;
-    json["step"]      = state.step;
-    json["time"]      = state.time;
-    json["step_size"] = state.step_size;
-    json["reason"]    = state.reason;
+    nlohmann::ordered_json json = {{"step", total.step},
+                                   {"time", time},
+                                   {"step_size", control.step_size()},
+                                   {"reason", reason}};
     for (unsigned int f = 0; f < 2 * dim; ++f)
       json["face_positions"].push_back(grid.face_position(f));
     for (const auto &field : points.layout.fields())
@@ -47,13 +44,7 @@ namespace impm
   }
 
   template void
-  write_checkpoint(const std::string &,
-                   const RunState &,
-                   BackgroundGrid<2> &,
-                   MaterialPoints<2> &);
+  Simulation<2>::save_last_good_state(const std::string &);
   template void
-  write_checkpoint(const std::string &,
-                   const RunState &,
-                   BackgroundGrid<3> &,
-                   MaterialPoints<3> &);
+  Simulation<3>::save_last_good_state(const std::string &);
 } // namespace impm

@@ -1,14 +1,13 @@
 #include <deal.II/base/utilities.h>
 
-#include <impm/balance/terms/point_traction.h>
+#include <impm/balance/terms/loads.h>
 #include <impm/base/exceptions.h>
 #include <impm/base/files.h>
-#include <impm/footprints/scatter.h>
+#include <impm/footprints/transfer.h>
 #include <impm/output/summary.h>
-#include <impm/run/checkpoint.h>
 #include <impm/run/motion_limits.h>
 #include <impm/run/simulation.h>
-#include <impm/scene/layout_choice.h>
+#include <impm/scene/scene.h>
 
 #include <algorithm>
 #include <cmath>
@@ -26,8 +25,7 @@ namespace impm
                               std::unique_ptr<GridPolicy<dim>> other_policy)
     : scene(the_scene)
     , communicator(communicator)
-    , silence(std::cout, false)
-    , timer(silence, TimerOutput::never, TimerOutput::wall_times)
+    , timer(std::cout, TimerOutput::never, TimerOutput::wall_times)
     , grid(scene.grid, communicator)
     , points(choose_layout(scene),
              *scene.history,
@@ -36,18 +34,13 @@ namespace impm
              grid)
     , rigid(scene.bodies, scene.geometry, grid)
     , policy(other_policy ? std::move(other_policy) :
-                            make_grid_policy(scene.grid, scene.faces))
+                            std::make_unique<GridPolicy<dim>>(scene.faces))
     , control(scene.time)
     , integrator(make_time_integrator(scene.time))
-    , builder(make_footprint_builder(scene.grid))
+    , builder(scene.grid)
     , pictures(scene.output, points, rigid, grid)
-    , history(scene.output, scene.faces, scene.bodies, points, rigid, grid)
-    , reference(scene.references,
-                scene.bodies,
-                scene.output,
-                scene.time,
-                points,
-                history)
+    , history(scene, points, rigid, grid)
+    , reference(scene, points, history)
     , console(verbosity, Utilities::MPI::this_mpi_process(communicator) == 0)
     , warnings(scene.warnings)
   {}
@@ -79,7 +72,7 @@ namespace impm
   double
   Simulation<dim>::cfl_unit() const
   {
-    return grid.discretization()->smallest_cell_extent / largest_speed(points);
+    return grid.discretization()->smallest_cell_extent / points.largest_speed();
   }
 
   template <int dim>
@@ -101,7 +94,7 @@ namespace impm
   }
 
   template <int dim>
-  NewtonSolver::Result
+  std::string
   Simulation<dim>::attempt(const double dt)
   {
     report.dt = dt;
@@ -109,9 +102,10 @@ namespace impm
       TimerOutput::Scope scope(timer, "set-up of the step");
       problem.reset();
       problem = std::make_unique<StepProblem<dim>>(
-        scene, grid, points, rigid, *integrator, *builder, counts, time, dt);
+        scene, grid, points, rigid, *integrator, builder, counts, time, dt);
     }
-    auto solution = solve_step(*problem, scene.solver, timer, result.increment);
+    const auto solution =
+      solve_step(*problem, scene.solver, timer, result.increment);
     report.newton_iterations += solution.iterations;
     report.linear_iterations += solution.linear_iterations;
     report.line_searches += solution.line_searches;
@@ -127,53 +121,47 @@ namespace impm
                        " /" + std::to_string(1 / solution.step_lengths[i]) :
                        "");
     console.detail("  residuals:" + iterations.str());
-    if (solution.converged)
-      {
-        solution.failure =
-          forbidden_motion(*problem, result.increment, grid, points, *policy);
-        solution.converged = solution.failure.empty();
-      }
-    return solution;
+    return solution.converged ?
+             forbidden_motion(
+               *problem, result.increment, grid, points, *policy) :
+             solution.failure;
   }
 
   template <int dim>
   void
   Simulation<dim>::advance()
   {
-    const auto step      = report.step + 1;
-    const auto fallbacks = counts.solver_fallbacks;
-    report               = StepReport();
-    report.step          = step;
+    report      = StepReport();
+    report.step = total.step + 1;
     adapt();
     for (double dt = control.begin(time, step_unit());;)
       {
-        const auto solution = attempt(dt);
+        const std::string failure = attempt(dt);
+        const bool        failed  = !failure.empty();
         // Nodes must not pass into a rigid body: the first one lands on it.
         const double part =
-          solution.converged ?
-            rigid.first_touch(result.increment,
-                              problem->constraints.is_constrained,
-                              time,
-                              time + dt) :
-            0.5;
-        if (solution.converged && part == 1)
+          failed ? 0.5 :
+                   rigid.first_touch(result.increment,
+                                     problem->constraints.is_constrained,
+                                     time,
+                                     time + dt);
+        if (part == 1)
           break;
         ++report.step_cuts;
         console.detail("  step cut at t = " + std::to_string(time) +
                        ", dt = " + std::to_string(dt) + ": " +
-                       (solution.converged ? "a node reaches a rigid body" :
-                                             solution.failure));
-        dt = control.cut(part, !solution.converged);
-        if (!solution.converged && control.is_too_short())
+                       (failed ? failure : "a node reaches a rigid body"));
+        dt = control.cut(part, failed);
+        if (failed && control.is_too_short())
           {
             std::ostringstream where;
             where << "at t = " << time << " s, step " << report.step << ": "
-                  << solution.failure << ", and dt = " << dt
+                  << failure << ", and dt = " << dt
                   << " s is below the smallest time step";
             throw ComputationError(where.str());
           }
       }
-    report.solver_fallbacks = counts.solver_fallbacks - fallbacks;
+    report.solver_fallbacks = counts.solver_fallbacks - total.solver_fallbacks;
     report.held_cells       = problem->n_held_cells;
     report.limited_boxes    = problem->n_limited_boxes;
     report.active_cells =
@@ -188,17 +176,10 @@ namespace impm
     history.take_reactions(*problem, forces);
     watch_faces();
     commit();
-    ++n_steps;
     control.accept();
     report.time         = time;
     report.wall_seconds = wall.wall_time();
-
-    sums.newton += report.newton_iterations;
-    sums.linear += report.linear_iterations;
-    sums.line_searches += report.line_searches;
-    sums.cuts += report.step_cuts;
-    sums.projections += report.projections;
-    sums.noise_stops += report.noise_stops;
+    total.append(report);
   }
 
   template <int dim>
@@ -227,18 +208,6 @@ namespace impm
 
   template <int dim>
   void
-  Simulation<dim>::save_last_good_state(const std::string &reason)
-  {
-    console.finish();
-    picture(false);
-    write_checkpoint(directory,
-                     {n_steps, time, control.step_size(), reason},
-                     grid,
-                     points);
-  }
-
-  template <int dim>
-  void
   Simulation<dim>::write_summary(const std::string &scene_name,
                                  const std::string &status,
                                  const FinerRuns   &finer_runs)
@@ -249,16 +218,16 @@ namespace impm
     summary.dim             = dim;
     summary.points          = points.sorted.n_global();
     summary.bytes_per_point = points.bytes_per_point();
-    summary.steps           = n_steps;
+    summary.steps           = total.step;
     summary.time            = time;
-    summary.counts          = {{"newton_iterations", sums.newton},
-                               {"linear_iterations", sums.linear},
-                               {"line_searches", sums.line_searches},
-                               {"step_cuts", sums.cuts},
+    summary.counts          = {{"newton_iterations", total.newton_iterations},
+                               {"linear_iterations", total.linear_iterations},
+                               {"line_searches", total.line_searches},
+                               {"step_cuts", total.step_cuts},
                                {"tangents", counts.tangents},
-                               {"tangent_projections", sums.projections},
+                               {"tangent_projections", total.projections},
                                {"solver_fallbacks", counts.solver_fallbacks},
-                               {"noise_stops", sums.noise_stops},
+                               {"noise_stops", total.noise_stops},
                                {"stress_evaluations",
                                 Utilities::MPI::sum(counts.stress_evaluations,
                                            communicator)},
@@ -284,10 +253,8 @@ namespace impm
     if (!integrator->has_inertia())
       return;
     // Of the highest mode of a grid of full cells, eq. 2.4.1.
-    const double unit  = cfl_unit();
-    const double limit = integrator->stable_step(2 / unit);
-    const double dt =
-      scene.time.largest_step * (scene.time.cfl_number > 0 ? unit : 1.);
+    const double limit = integrator->stable_step(2 / cfl_unit());
+    const double dt    = scene.time.largest_step * step_unit();
     if (dt <= 1.001 * limit)
       return;
     std::ostringstream text;
@@ -362,10 +329,11 @@ namespace impm
     warn_of_instability();
     if (scene.output.pictures)
       picture(false);
-    next_picture       = scene.output.picture_interval;
-    const auto is_over = [&]() {
+    const double interval     = scene.output.picture_interval;
+    double       next_picture = interval;
+    const auto   is_over      = [&]() {
       return time >= scene.time.end * (1 - 1e-12) ||
-             report.step >= scene.time.largest_number_of_steps;
+             total.step >= scene.time.largest_number_of_steps;
     };
     StepReport since_row;
     try
@@ -380,15 +348,14 @@ namespace impm
                 write_row(since_row);
                 since_row = StepReport();
               }
-            const bool due = scene.output.picture_interval > 0 ?
+            const bool due = interval > 0 ?
                                time >= next_picture * (1 - 1e-9) :
                                report.step % scene.output.picture_steps == 0;
             if (scene.output.pictures && (due || last))
               {
                 picture(true);
                 // A long step may have passed several.
-                if (const double interval = scene.output.picture_interval;
-                    interval > 0)
+                if (interval > 0)
                   next_picture =
                     interval * (std::floor(time / interval * (1 + 1e-9)) + 1);
               }

@@ -20,12 +20,12 @@ namespace impm
     double              work = 0;
     for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
       {
-        if (problem.loads != nullptr)
+        if (problem.loads)
           work -= 0.5 *
                   (problem.loads->at_start.local_element(i) +
                    problem.loads->at_end.local_element(i)) *
                   u.local_element(i);
-        const unsigned int carrier = constraints.carrier(i);
+        const unsigned int carrier = constraints.carrier[i];
         if (carrier == StepConstraints<dim>::no_carrier)
           continue;
         const double inertia = problem.held_inertia(u, i);
@@ -47,8 +47,8 @@ namespace impm
           last_forces[b][d] = sum[0];
         }
     internal += Utilities::MPI::sum(problem.response.work(), comm);
-    for (const Term *term : problem.stabilization)
-      stabilization += Utilities::MPI::sum(term->energy(u), comm);
+    for (const Term *term : problem.stabilization())
+      stabilization += Utilities::MPI::sum(term->energy(u, u), comm);
   }
 
   template class WorkDone<2>;

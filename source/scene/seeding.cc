@@ -1,13 +1,17 @@
 #include <deal.II/base/quadrature_lib.h>
-#include <deal.II/base/utilities.h>
 
+#include <deal.II/fe/fe_nothing.h>
 #include <deal.II/fe/fe_values.h>
 
 #include <impm/base/exceptions.h>
 #include <impm/scene/point_file.h>
 #include <impm/scene/seeding.h>
 
-#include <sstream>
+#include <boost/lexical_cast.hpp>
+
+#include <array>
+#include <cmath>
+#include <map>
 
 namespace impm
 {
@@ -24,6 +28,28 @@ namespace impm
                1.;
     }
 
+    /** The pattern of points in a cell: evenly spaced, or those of Gauss. */
+    template <int dim>
+    Quadrature<dim>
+    points_of_a_cell(const std::array<unsigned int, dim> &numbers,
+                     const bool                           gauss)
+    {
+      const auto line = [&](const unsigned int d) -> Quadrature<1> {
+        const unsigned int n = numbers[d];
+        if (gauss)
+          return QGauss<1>(n);
+        std::vector<Point<1>> points;
+        for (unsigned int i = 0; i < n; ++i)
+          points.emplace_back((i + 0.5) / n);
+        return points;
+      };
+      if constexpr (dim == 2)
+        return QAnisotropic<2>(line(0), line(1));
+      else
+        return QAnisotropic<3>(line(0), line(1), line(2));
+    }
+
+    /** The cells of a Lagrangian grid have to lie in the body as a whole. */
     template <int dim>
     void
     seed_shape(const GeometryKind         geometry,
@@ -31,88 +57,46 @@ namespace impm
                const BackgroundGrid<dim> &grid,
                std::vector<Seed<dim>>    &seeds)
     {
-      unsigned int pattern = 1;
-      for (const unsigned int n : body.points_per_cell)
-        pattern *= n;
-      for (const auto &cell : grid.triangulation.active_cell_iterators())
-        if (cell->is_locally_owned())
-          for (unsigned int k = 0; k < pattern; ++k)
-            {
-              Seed<dim>    seed;
-              double       volume = 1;
-              unsigned int index  = k;
-              for (unsigned int d = 0; d < dim; ++d)
-                {
-                  const unsigned int n      = body.points_per_cell[d];
-                  const double       extent = cell_extent(cell, d);
-                  seed.domain[d]            = extent / n;
-                  seed.unit_position[d]     = (index % n + 0.5) / n;
-                  seed.position[d] =
-                    cell->vertex(0)[d] + seed.unit_position[d] * extent;
-                  volume *= seed.domain[d];
-                  index /= n;
-                }
-              if (!body.shape->contains(seed.position))
-                continue;
-              seed.cell   = cell;
-              seed.volume = volume * circumference(geometry, seed.position);
-              seeds.push_back(seed);
-            }
-    }
-
-    template <int dim>
-    Quadrature<dim>
-    gauss_points(const std::array<unsigned int, dim> &numbers)
-    {
-      const QGauss<1> x(numbers[0]), y(numbers[1]);
-      if constexpr (dim == 2)
-        return QAnisotropic<2>(x, y);
-      else
-        return QAnisotropic<3>(x, y, QGauss<1>(numbers[2]));
-    }
-
-    /** Gauss points, in cells that lie in the body as a whole. */
-    template <int dim>
-    void
-    seed_gauss_points(const GeometryKind         geometry,
-                      const BodySpec<dim>       &body,
-                      const BackgroundGrid<dim> &grid,
-                      std::vector<Seed<dim>>    &seeds)
-    {
-      const auto    quadrature = gauss_points<dim>(body.points_per_cell);
-      FEValues<dim> values(*grid.mapping,
-                           grid.discretization()->numbering->fe,
-                           quadrature,
+      const auto pattern =
+        points_of_a_cell<dim>(body.points_per_cell, grid.is_lagrangian);
+      const FE_Nothing<dim> no_field;
+      FEValues<dim>         values(*grid.mapping,
+                           no_field,
+                           pattern,
                            update_quadrature_points | update_JxW_values);
-      std::string   cut;
+      std::string           cut;
       for (const auto &cell : grid.triangulation.active_cell_iterators())
         if (cell->is_locally_owned())
           {
-            values.reinit(cell);
-            unsigned int inside = 0;
-            for (const auto &x : values.get_quadrature_points())
-              inside += body.shape->contains(x);
-            if (inside == 0)
-              continue;
-            if (inside < quadrature.size())
-              {
-                std::ostringstream place;
-                place << cell->center();
-                cut = place.str();
-              }
-            for (const unsigned int q : values.quadrature_point_indices())
+            const unsigned int n_before = seeds.size();
+            if (grid.is_lagrangian)
+              values.reinit(cell);
+            for (unsigned int q = 0; q < pattern.size(); ++q)
               {
                 Seed<dim> seed;
                 seed.cell          = cell;
-                seed.position      = values.quadrature_point(q);
-                seed.unit_position = quadrature.point(q);
-                seed.volume =
-                  values.JxW(q) * circumference(geometry, seed.position);
+                seed.unit_position = pattern.point(q);
+                seed.volume        = 1;
                 for (unsigned int d = 0; d < dim; ++d)
-                  seed.domain[d] =
-                    cell_extent(cell, d) / body.points_per_cell[d];
-                seeds.push_back(seed);
+                  {
+                    const double extent = cell_extent(cell, d);
+                    seed.domain[d]      = extent / body.points_per_cell[d];
+                    seed.position[d] =
+                      cell->vertex(0)[d] + seed.unit_position[d] * extent;
+                    seed.volume *= seed.domain[d];
+                  }
+                if (grid.is_lagrangian)
+                  {
+                    seed.position = values.quadrature_point(q);
+                    seed.volume   = values.JxW(q);
+                  }
+                seed.volume *= circumference(geometry, seed.position);
+                if (body.shape->contains(seed.position))
+                  seeds.push_back(seed);
               }
+            const unsigned int n_inside = seeds.size() - n_before;
+            if (grid.is_lagrangian && n_inside > 0 && n_inside < pattern.size())
+              cut = boost::lexical_cast<std::string>(cell->center());
           }
       for (const auto &place :
            Utilities::MPI::all_gather(grid.communicator, cut))
@@ -138,25 +122,21 @@ namespace impm
       // Owned by the first cell, by number, that contains it: a point on a
       // face between two ranks must be taken once.
       std::vector<double> owner(cloud.positions.size(), 1e300);
-      std::vector<typename Triangulation<dim>::active_cell_iterator> cells(
-        cloud.positions.size());
+      std::map<unsigned int, decltype(Seed<dim>::cell)> cells;
       for (const auto &cell : grid.triangulation.active_cell_iterators())
         if (cell->is_locally_owned())
-          for (unsigned int p = 0; p < cloud.positions.size(); ++p)
+          for (unsigned int p = 0; p < owner.size(); ++p)
             if (cell->bounding_box().point_inside(cloud.positions[p]) &&
-                cell->global_active_cell_index() < owner[p])
-              {
-                owner[p] = cell->global_active_cell_index();
-                cells[p] = cell;
-              }
+                cells.emplace(p, cell).second)
+              owner[p] = cell->global_active_cell_index();
       std::vector<double> first(owner.size());
       Utilities::MPI::min(owner, grid.communicator, first);
       const auto refuse = [&](const unsigned int p, const std::string &why) {
-        std::ostringstream place;
-        place << cloud.positions[p];
-        throw InputError("Bodies/" + body.name + "/File",
-                         "point " + std::to_string(p + 1) + " of '" +
-                           body.point_file + "' at " + place.str() + why);
+        throw InputError(
+          "Bodies/" + body.name + "/File",
+          "point " + std::to_string(p + 1) + " of '" + body.point_file +
+            "' at " + boost::lexical_cast<std::string>(cloud.positions[p]) +
+            why);
       };
       for (unsigned int p = 0; p < owner.size(); ++p)
         {
@@ -169,7 +149,7 @@ namespace impm
           if (owner[p] != first[p])
             continue;
           Seed<dim> seed;
-          seed.cell     = cells[p];
+          seed.cell     = cells.at(p);
           seed.position = cloud.positions[p];
           seed.unit_position =
             grid.mapping->transform_real_to_unit_cell(seed.cell, seed.position);
@@ -192,9 +172,7 @@ namespace impm
             const BackgroundGrid<dim> &grid)
   {
     std::vector<Seed<dim>> seeds;
-    if (grid.is_lagrangian)
-      seed_gauss_points(geometry, body, grid, seeds);
-    else if (body.shape)
+    if (body.shape)
       seed_shape(geometry, body, grid, seeds);
     else
       seed_file(geometry, body, grid, seeds);
@@ -206,9 +184,8 @@ namespace impm
                        "body '" + body.name +
                          "' has no points: it is empty, lies outside the grid "
                          "or is too thin for 'Points per cell'");
-    for (unsigned int b = 0; b < bodies.size(); ++b)
+    for (const auto &other : bodies)
       {
-        const auto &other = bodies[b];
         if (other.name == body.name || !other.shape)
           continue;
         unsigned int shared = 0;

@@ -1,78 +1,33 @@
-#include <deal.II/base/exceptions.h>
 #include <deal.II/base/function_parser.h>
 #include <deal.II/base/patterns.h>
-#include <deal.II/base/utilities.h>
 
 #include <impm/base/exceptions.h>
+#include <impm/base/names.h>
 #include <impm/input/expressions.h>
 #include <impm/input/parameter_file.h>
 #include <impm/scene/shapes.h>
 
-#include <boost/algorithm/string/join.hpp>
+#include <boost/algorithm/cxx11/any_of.hpp>
 #include <boost/range/adaptor/map.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <iostream>
-#include <sstream>
 
 namespace impm
 {
   namespace
   {
-    namespace Patterns  = dealii::Patterns;
-    namespace Utilities = dealii::Utilities;
+    namespace Patterns = dealii::Patterns;
+    using boost::algorithm::any_of;
     using dealii::BoundingBox;
     using dealii::FunctionParser;
     using dealii::Point;
     using Constants = std::map<std::string, double>;
     using Handler   = dealii::ParameterHandler;
 
-    template <int dim>
-    using ShapePointer = std::shared_ptr<const Shape<dim>>;
-
     /** How far outside of a surface a point still counts as on it, relative to
      * the size of the shape: round-off must not decide. */
     constexpr double tolerance = 1e-12;
-
-    /** A shape put together from its two answers. */
-    template <int dim>
-    class Region : public Shape<dim>
-    {
-    public:
-      using IsInside = std::function<bool(const Point<dim> &)>;
-
-      Region(const IsInside                        &inside,
-             const std::optional<BoundingBox<dim>> &around,
-             const bool                             fills_box = false)
-        : is_inside(inside)
-        , box(around)
-        , fills_box(fills_box)
-      {}
-
-      bool
-      contains(const Point<dim> &point) const override
-      {
-        return is_inside(point);
-      }
-
-      std::optional<BoundingBox<dim>>
-      bounding_box() const override
-      {
-        return box;
-      }
-
-      bool
-      is_box() const override
-      {
-        return fills_box;
-      }
-
-    private:
-      const IsInside                        is_inside;
-      const std::optional<BoundingBox<dim>> box;
-      const bool                            fills_box;
-    };
 
     /** What may stand in an entry. All have to be set: the defaults match the
      * patterns, but create() refuses them. */
@@ -111,25 +66,23 @@ namespace impm
     }
 
     template <int dim>
-    std::vector<ShapePointer<dim>>
+    std::vector<std::shared_ptr<const Shape<dim>>>
     get_shapes(const Handler          &prm,
                const NamedShapes<dim> &others,
                const unsigned int      n_at_least)
     {
       const std::string allowed =
         "the shapes named before it: " +
-        boost::algorithm::join(others | boost::adaptors::map_keys, ", ") +
+        join(others | boost::adaptors::map_keys, ", ") +
         (others.empty() ? "none" : "");
 
-      std::vector<ShapePointer<dim>> shapes;
+      std::vector<std::shared_ptr<const Shape<dim>>> shapes;
       for (const auto &name : split_names(prm.get("Of")))
-        {
-          const auto other = others.find(name);
-          if (other == others.end())
-            throw InputError("Of",
-                             "found '" + name + "', allowed are " + allowed);
+        if (const auto other = others.find(name); other != others.end())
           shapes.push_back(other->second);
-        }
+        else
+          throw InputError("Of",
+                           "found '" + name + "', allowed are " + allowed);
       if (shapes.size() < n_at_least)
         throw InputError("Of",
                          "found '" + prm.get("Of") + "', allowed are " +
@@ -139,7 +92,7 @@ namespace impm
     }
 
     template <int dim>
-    ShapePointer<dim>
+    Shape<dim>
     create_box(Handler &prm, const Constants &, const NamedShapes<dim> &)
     {
       const auto lower = get_point<dim>(prm, "Lower corner");
@@ -154,27 +107,28 @@ namespace impm
       // The tolerance is one per direction: a box that is to reach "to
       // infinity" in one of them stays sharp in the others.
       const BoundingBox<dim> box({lower, upper});
-      const auto             is_inside = [box](const Point<dim> &point) {
-        return box.point_inside(point, tolerance);
-      };
-      return std::make_shared<Region<dim>>(is_inside, box, true);
+      return {[box](const Point<dim> &point) {
+                return box.point_inside(point, tolerance);
+              },
+              box,
+              true};
     }
 
     template <int dim>
-    ShapePointer<dim>
+    Shape<dim>
     create_ball(Handler &prm, const Constants &, const NamedShapes<dim> &)
     {
       const auto       centre = get_point<dim>(prm, "Centre");
       const double     radius = get_radius(prm);
       BoundingBox<dim> box({centre, centre});
       box.extend(radius);
-      const auto is_inside = [centre, radius](const Point<dim> &point) {
-        return centre.distance(point) <= radius * (1 + tolerance);
-      };
-      return std::make_shared<Region<dim>>(is_inside, box);
+      return {[centre, radius](const Point<dim> &point) {
+                return centre.distance(point) <= radius * (1 + tolerance);
+              },
+              box};
     }
 
-    ShapePointer<3>
+    Shape<3>
     create_cylinder(Handler &prm, const Constants &, const NamedShapes<3> &)
     {
       const auto   from   = get_point<3>(prm, "Axis from");
@@ -196,64 +150,62 @@ namespace impm
 
       // The ends are discs, which reach the farther in a direction the less
       // the axis points there.
-      Point<3> lower, upper;
+      dealii::Tensor<1, 3> reach;
       for (unsigned int d = 0; d < 3; ++d)
-        {
-          const double reach =
-            radius * std::sqrt(std::max(0., 1 - axis[d] * axis[d]));
-          lower[d] = std::min(from[d], to[d]) - reach;
-          upper[d] = std::max(from[d], to[d]) + reach;
-        }
-      return std::make_shared<Region<3>>(is_inside,
-                                         BoundingBox<3>({lower, upper}));
+        reach[d] = radius * std::sqrt(std::max(0., 1 - axis[d] * axis[d]));
+      BoundingBox<3> box({from - reach, from + reach});
+      box.merge_with(BoundingBox<3>({to - reach, to + reach}));
+      return {is_inside, box};
     }
 
     template <int dim>
-    ShapePointer<dim>
+    Shape<dim>
+    unite(const std::vector<std::shared_ptr<const Shape<dim>>> &shapes)
+    {
+      auto box = shapes.front()->bounding_box;
+      for (const auto &shape : shapes)
+        if (const auto &next = shape->bounding_box; box && next)
+          box->merge_with(*next);
+        else
+          box.reset();
+      return {[shapes](const Point<dim> &point) {
+                return any_of(shapes, [&](const auto &shape) {
+                  return shape->contains(point);
+                });
+              },
+              box};
+    }
+
+    template <int dim>
+    Shape<dim>
     create_union(Handler &prm,
                  const Constants &,
                  const NamedShapes<dim> &others)
     {
-      const auto shapes = get_shapes(prm, others, 1);
-      auto       box    = shapes.front()->bounding_box();
-      for (const auto &shape : shapes)
-        if (const auto next = shape->bounding_box(); box && next)
-          box->merge_with(*next);
-        else
-          box.reset();
-      const auto is_inside = [shapes](const Point<dim> &point) {
-        const auto has_point = [&](const auto &shape) {
-          return shape->contains(point);
-        };
-        return std::any_of(shapes.begin(), shapes.end(), has_point);
-      };
-      return std::make_shared<Region<dim>>(is_inside, box);
+      return unite(get_shapes(prm, others, 1));
     }
 
     template <int dim>
-    ShapePointer<dim>
+    Shape<dim>
     create_difference(Handler &prm,
                       const Constants &,
                       const NamedShapes<dim> &others)
     {
       const auto shapes = get_shapes(prm, others, 2);
+      const auto whole  = shapes.front();
+      const auto cuts   = unite<dim>({shapes.begin() + 1, shapes.end()});
 
       // A point on the surface of what is cut away has to go one way. It goes
       // with the cut: else two touching cuts would leave a film of points
       // between them, and a shape would share points with what surrounds it.
-      const auto is_inside = [shapes](const Point<dim> &point) {
-        const auto has_point = [&](const auto &shape) {
-          return shape->contains(point);
-        };
-        return has_point(shapes.front()) &&
-               std::none_of(shapes.begin() + 1, shapes.end(), has_point);
-      };
-      return std::make_shared<Region<dim>>(is_inside,
-                                           shapes.front()->bounding_box());
+      return {[whole, cuts](const Point<dim> &point) {
+                return whole->contains(point) && !cuts.contains(point);
+              },
+              whole->bounding_box};
     }
 
     template <int dim>
-    ShapePointer<dim>
+    Shape<dim>
     create_function(Handler         &prm,
                     const Constants &constants,
                     const NamedShapes<dim> &)
@@ -263,10 +215,10 @@ namespace impm
         read_expressions<dim>(prm, entry, 1, false, constants);
       if (!parser)
         throw InputError(entry, "found '', allowed is an expression");
-      const auto is_inside = [parser](const Point<dim> &point) {
-        return parser->value(point) <= 0;
-      };
-      return std::make_shared<Region<dim>>(is_inside, std::nullopt);
+      return {[parser](const Point<dim> &point) {
+                return parser->value(point) <= 0;
+              },
+              std::nullopt};
     }
 
     template <int dim>
@@ -326,7 +278,7 @@ namespace impm
   }
 
   template const std::vector<ShapeEntry<2>> &
-  shape_list<2>();
+  shape_list();
   template const std::vector<ShapeEntry<3>> &
-  shape_list<3>();
+  shape_list();
 } // namespace impm

@@ -11,9 +11,9 @@ namespace impm
   }
 
   void
-  Bfgs::apply(Vector &dst, const Vector &src, const Solve &solve) const
+  Bfgs::apply(Vector &dst, const Vector &src, const LinearMap &inverse) const
   {
-    work = src;
+    Vector              work = src;
     std::vector<double> factors(pairs.size());
     for (unsigned int i = pairs.size(); i-- > 0;)
       {
@@ -21,7 +21,7 @@ namespace impm
         factors[i]       = (pair.change * work) / pair.product;
         work.add(-factors[i], pair.residual_change);
       }
-    solve(dst, work);
+    inverse.vmult(dst, work);
     for (unsigned int i = 0; i < pairs.size(); ++i)
       {
         const auto  &pair = pairs[i];

@@ -2,27 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <utility>
 
 namespace impm
 {
-  void
-  ConvergenceTest::begin_step()
-  {
-    first_residual.clear();
-    smallest_residual = std::numeric_limits<double>::max();
-    n_in_vain         = 0;
-    largest_change    = 0;
-    any               = false;
-  }
-
-  void
-  ConvergenceTest::set_first_residual(std::vector<double> parts)
-  {
-    first_residual = std::move(parts);
-  }
-
   void
   ConvergenceTest::count(const double change, const double energy)
   {

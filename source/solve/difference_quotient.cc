@@ -3,25 +3,12 @@
 
 namespace impm
 {
-  using namespace dealii;
-
-  DifferenceQuotient::DifferenceQuotient(NonlinearSystem &system,
-                                         const double     step)
-    : system(system)
-    , step(step)
-  {
-    system.initialize(direction);
-  }
-
   double
-  DifferenceQuotient::norm(const Vector &increment) const
+  DifferenceQuotient::norm(Vector increment) const
   {
-    const Vector *weight = system.weight_of_unknowns();
-    if (weight == nullptr)
-      return increment.l2_norm();
-    Vector scaled = increment;
-    scaled.scale(*weight);
-    return scaled.l2_norm();
+    if (const Vector *weight = system.weight_of_unknowns())
+      increment.scale(*weight);
+    return increment.l2_norm();
   }
 
   void

@@ -7,61 +7,33 @@
 #include <impm/base/exceptions.h>
 #include <impm/solve/linear_solver.h>
 
-#include <functional>
-
 namespace impm
 {
   using namespace dealii;
-
-  namespace
-  {
-    /** A diagonal matrix, by its inverse. */
-    struct JacobiPreconditioner
-    {
-      const Vector &inverse_diagonal;
-
-      void
-      vmult(Vector &dst, const Vector &src) const
-      {
-        dst = src;
-        dst.scale(inverse_diagonal);
-      }
-    };
-
-    /** Either form of the tangent, for deal.II's solvers. */
-    struct Operator
-    {
-      std::function<void(Vector &, const Vector &)> apply;
-
-      void
-      vmult(Vector &dst, const Vector &src) const
-      {
-        apply(dst, src);
-      }
-    };
-  } // namespace
 
   LinearSolver::LinearSolver(const SolverSpec &spec,
                              NonlinearSystem  &system,
                              TimerOutput      &timer)
     : spec(spec)
     , system(system)
-    , quotient(system, spec.difference_step)
     , timer(timer)
+    , quotient(system, spec.difference_step)
+    , needs_matrix(spec.linear_solver == LinearSolverKind::direct ||
+                   spec.tangent == TangentKind::matrix ||
+                   spec.preconditioner == PreconditionerKind::amg)
   {
     system.initialize(inverse_diagonal);
-    if (needs_matrix())
-      {
-        TimerOutput::Scope scope(timer, "sparsity");
-        matrix = system.make_matrix();
-      }
   }
 
-  void
-  LinearSolver::linearize_at(const Vector &u)
+  NonlinearSystem::Evaluation
+  LinearSolver::evaluate(const Vector &u, const bool with_tangent)
   {
+    TimerOutput::Scope scope(timer, "points");
+    const auto         result =
+      system.evaluate(u, with_tangent && !spec.without_tangent());
     if (spec.tangent == TangentKind::difference_quotient)
       quotient.linearize_at(u);
+    return result;
   }
 
   void
@@ -77,55 +49,55 @@ namespace impm
   LinearSolver::assemble()
   {
     if (!matrix)
-      matrix = system.make_matrix();
+      {
+        TimerOutput::Scope scope(timer, "sparsity");
+        matrix = system.make_matrix();
+      }
+    TimerOutput::Scope scope(timer, "assembly");
     system.assemble(*matrix);
-    matrix_is_current = true;
   }
 
   void
   LinearSolver::take_tangent()
   {
     ++system.counts->tangents;
-    factors.reset();
-    matrix_is_current = false;
-    if (needs_matrix())
-      {
-        TimerOutput::Scope scope(timer, "assembly");
-        assemble();
-      }
-    if (spec.linear_solver != LinearSolverKind::direct)
-      update_preconditioner();
-  }
-
-  void
-  LinearSolver::update_preconditioner()
-  {
+    preconditioner = inverse = {};
+    if (needs_matrix)
+      assemble();
+    if (spec.linear_solver == LinearSolverKind::direct)
+      return;
     if (spec.preconditioner == PreconditionerKind::amg)
       {
         TimerOutput::Scope scope(timer, "preconditioner");
-        amg.build(*matrix, system.near_null_space());
+        preconditioner = make_amg(*matrix, system.near_null_space());
         return;
       }
+    // Unknowns that are momenta are near enough to the right-hand side: an
+    // increment of a node with little mass says little.
     if (spec.preconditioner == PreconditionerKind::jacobi)
       system.diagonal(inverse_diagonal);
-    else if (solves_for_momentum())
+    else if (system.weight_of_unknowns() != nullptr)
       inverse_diagonal = *system.weight_of_unknowns();
     else
       return;
     for (unsigned int i = 0; i < inverse_diagonal.locally_owned_size(); ++i)
       inverse_diagonal.local_element(i) =
         system.is_constrained(i) ? 1. : 1 / inverse_diagonal.local_element(i);
+    preconditioner.vmult = [this](Vector &dst, const Vector &src) {
+      dst = src;
+      dst.scale(inverse_diagonal);
+    };
   }
 
   unsigned int
-  LinearSolver::iterate(Vector &x, const Vector &b, const double tolerance)
+  LinearSolver::iterate(Vector &x, const Vector &b)
   {
-    const double           goal = tolerance * b.l2_norm();
+    const double           goal = spec.linear_tolerance * b.l2_norm();
     SolverControl          strict(spec.linear_iterations, goal);
     IterationNumberControl lenient(spec.linear_iterations, goal);
     SolverControl         &control = spec.accept_unfinished ? lenient : strict;
-    Operator               tangent;
-    tangent.apply = [&](Vector &dst, const Vector &src) {
+    LinearMap              tangent;
+    tangent.vmult = [&](Vector &dst, const Vector &src) {
       if (spec.tangent == TangentKind::difference_quotient)
         quotient.vmult(dst, src);
       else if (spec.tangent == TangentKind::matrix_free)
@@ -136,65 +108,49 @@ namespace impm
           matrix->vmult(dst, src);
         }
     };
-    const auto run = [&](auto &solver) {
-      if (spec.preconditioner == PreconditionerKind::amg)
-        solver.solve(tangent, x, b, amg);
-      else if (spec.preconditioner == PreconditionerKind::jacobi ||
-               solves_for_momentum())
-        solver.solve(tangent, x, b, JacobiPreconditioner{inverse_diagonal});
+    const auto run = [&](auto &&solver) {
+      if (preconditioner.vmult)
+        solver.solve(tangent, x, b, preconditioner);
       else
         solver.solve(tangent, x, b, PreconditionIdentity());
     };
     if (spec.linear_solver == LinearSolverKind::cg)
-      {
-        SolverCG<Vector> solver(control);
-        run(solver);
-      }
+      run(SolverCG<Vector>(control));
     else
       {
         SolverGMRES<Vector>::AdditionalData data;
-        compat::set_basis_size<Vector>(data, spec.gmres_directions);
+        compat::set_basis_size(data, spec.gmres_directions);
         data.right_preconditioning = true;
-        SolverGMRES<Vector> solver(control, data);
-        run(solver);
+        run(SolverGMRES<Vector>(control, data));
       }
     return control.last_step();
   }
 
-  void
-  LinearSolver::solve_directly(Vector &x, const Vector &b)
-  {
-    TimerOutput::Scope scope(timer, "direct solver");
-    // What has been factorized must stay: a tangent may be solved with again.
-    if (!matrix_is_current)
-      assemble();
-    if (!factors)
-      factors = std::make_unique<DirectSolver>(*matrix);
-    factors->solve(x, b);
-  }
-
   unsigned int
-  LinearSolver::solve(Vector &x, const Vector &b, const double tolerance)
+  LinearSolver::solve(Vector &x, const Vector &b)
   {
-    x = 0;
-    if (spec.linear_solver == LinearSolverKind::direct)
-      {
-        solve_directly(x, b);
-        return 1;
-      }
-    try
-      {
-        TimerOutput::Scope scope(timer, "iterative solver");
-        return iterate(x, b, tolerance);
-      }
-    catch (const ExceptionBase &)
-      {
-        if (spec.accept_unfinished)
-          throw LinearizationError("the linear solver broke down");
-        ++system.counts->solver_fallbacks;
-        x = 0;
-        solve_directly(x, b);
-        return spec.linear_iterations;
-      }
+    const bool is_direct = spec.linear_solver == LinearSolverKind::direct;
+    x                    = 0;
+    if (!is_direct)
+      try
+        {
+          TimerOutput::Scope scope(timer, "iterative solver");
+          return iterate(x, b);
+        }
+      catch (const ExceptionBase &)
+        {
+          if (spec.accept_unfinished)
+            throw LinearizationError("the linear solver broke down");
+          ++system.counts->solver_fallbacks;
+          x = 0;
+        }
+    // What has been factorized must stay: a tangent may be solved with again.
+    if (!needs_matrix && !inverse.vmult)
+      assemble();
+    TimerOutput::Scope scope(timer, "direct solver");
+    if (!inverse.vmult)
+      inverse = factorize(*matrix);
+    inverse.vmult(x, b);
+    return is_direct ? 1 : spec.linear_iterations;
   }
 } // namespace impm

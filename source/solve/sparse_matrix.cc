@@ -9,7 +9,6 @@
 
 #include <Teuchos_ParameterList.hpp>
 
-#include <exception>
 #include <filesystem>
 #include <iostream>
 #include <sstream>
@@ -18,110 +17,83 @@ namespace impm
 {
   using namespace dealii;
 
-  namespace
+  struct SparseMatrix::Trilinos
   {
-    const char *const singular =
-      "the linear system is singular (a body that nothing holds, or with too few "
-      "points for its grid?)";
-  } // namespace
-
-  struct SparseMatrix::Implementation
-  {
-    Implementation(const IndexSet                  &owned,
-                   const IndexSet                  &relevant,
-                   const AffineConstraints<double> &constraints,
-                   const MPI_Comm                   communicator)
-      : owned(owned)
-      , communicator(communicator)
-      , constraints(constraints)
-      , pattern(owned, owned, relevant, communicator)
-    {}
-
-    const IndexSet                    owned;
-    const MPI_Comm                    communicator;
-    const AffineConstraints<double>  &constraints;
     TrilinosWrappers::SparsityPattern pattern;
     TrilinosWrappers::SparseMatrix    matrix;
   };
 
-  SparseMatrix::SparseMatrix(const IndexSet                  &owned,
-                             const IndexSet                  &relevant,
-                             const AffineConstraints<double> &constraints,
-                             const MPI_Comm                   communicator)
-    : implementation(std::make_unique<Implementation>(
-        owned, relevant, constraints, communicator))
-  {}
+  SparseMatrix::SparseMatrix(const Utilities::MPI::Partitioner &partitioner,
+                             const AffineConstraints<double>   &constraints)
+    : trilinos(std::make_unique<Trilinos>())
+    , constraints(constraints)
+  {
+    const IndexSet &owned = partitioner.locally_owned_range();
+    trilinos->pattern.reinit(owned,
+                             owned,
+                             constraints.get_local_lines(),
+                             partitioner.get_mpi_communicator());
+  }
 
   SparseMatrix::~SparseMatrix() = default;
 
   void
   SparseMatrix::add_to_pattern(const Dofs &dofs)
   {
-    implementation->constraints.add_entries_local_to_global(
-      dofs, implementation->pattern);
+    constraints.add_entries_local_to_global(dofs, trilinos->pattern);
   }
 
   void
   SparseMatrix::end_pattern()
   {
-    for (const auto dof : implementation->owned)
-      implementation->pattern.add(dof, dof);
-    implementation->pattern.compress();
-    implementation->matrix.reinit(implementation->pattern);
-    implementation->pattern.clear();
+    auto &pattern = trilinos->pattern;
+    for (const auto dof : pattern.locally_owned_range_indices())
+      pattern.add(dof, dof);
+    pattern.compress();
+    trilinos->matrix.reinit(pattern);
+    pattern.clear();
   }
 
   void
   SparseMatrix::set_zero()
   {
-    implementation->matrix = 0;
+    trilinos->matrix = 0;
   }
 
   void
   SparseMatrix::add_block(const FullMatrix<double> &block, const Dofs &dofs)
   {
-    implementation->constraints.distribute_local_to_global(
-      block, dofs, implementation->matrix);
+    constraints.distribute_local_to_global(block, dofs, trilinos->matrix);
   }
 
   void
-  SparseMatrix::add(const types::global_dof_index row,
-                    const types::global_dof_index column,
-                    const double                  value)
+  SparseMatrix::add_to_diagonal(const Dof dof, const double value)
   {
-    implementation->matrix.add(row, column, value);
+    trilinos->matrix.add(dof, dof, value);
   }
 
   void
-  SparseMatrix::set(const types::global_dof_index row,
-                    const types::global_dof_index column,
-                    const double                  value)
+  SparseMatrix::set_diagonal(const Dof dof, const double value)
   {
-    implementation->matrix.set(row, column, value);
-  }
-
-  void
-  SparseMatrix::end_adding()
-  {
-    implementation->matrix.compress(VectorOperation::add);
-  }
-
-  void
-  SparseMatrix::end_setting()
-  {
-    implementation->matrix.compress(VectorOperation::insert);
+    trilinos->matrix.set(dof, dof, value);
   }
 
   double
-  SparseMatrix::diagonal(const types::global_dof_index dof) const
+  SparseMatrix::diagonal(const Dof dof) const
   {
-    return implementation->matrix.diag_element(dof);
+    return trilinos->matrix.diag_element(dof);
+  }
+
+  void
+  SparseMatrix::compress(const VectorOperation::values operation)
+  {
+    trilinos->matrix.compress(operation);
   }
 
   void
   SparseMatrix::vmult(Vector &dst, const Vector &src) const
   {
-    implementation->matrix.vmult(dst, src);
+    trilinos->matrix.vmult(dst, src);
   }
 
   void
@@ -129,116 +101,106 @@ namespace impm
                          const Vector       &D,
                          const SparseMatrix &B)
   {
-    TrilinosWrappers::MPI::Vector scaling(A.implementation->owned,
-                                          A.implementation->communicator);
-    for (const auto dof : A.implementation->owned)
+    TrilinosWrappers::MPI::Vector scaling(D.locally_owned_elements(),
+                                          D.get_mpi_communicator());
+    for (const auto dof : D.locally_owned_elements())
       scaling[dof] = D[dof];
     scaling.compress(VectorOperation::insert);
-    A.implementation->matrix.mmult(implementation->matrix,
-                                   B.implementation->matrix,
-                                   scaling);
+    A.trilinos->matrix.mmult(trilinos->matrix, B.trilinos->matrix, scaling);
   }
 
-
-  struct AmgPreconditioner::Implementation
+  namespace
   {
-    TrilinosWrappers::PreconditionAMG preconditioner;
-    std::vector<double>               modes; ///< whose address ML keeps
-  };
+    [[noreturn]] void
+    blame_matrix()
+    {
+      throw LinearizationError(
+        "the linear system is singular (a body that nothing holds, or with too few "
+        "points for its grid?)");
+    }
 
-  AmgPreconditioner::AmgPreconditioner()
-    : implementation(std::make_unique<Implementation>())
-  {}
+    struct Amg
+    {
+      TrilinosWrappers::PreconditionAMG preconditioner;
+      std::vector<double>               modes; ///< whose address ML keeps
+    };
 
-  AmgPreconditioner::~AmgPreconditioner() = default;
+    struct Factors
+    {
+      SolverControl                  control;
+      TrilinosWrappers::SolverDirect solver{control};
+    };
+  } // namespace
 
-  void
-  AmgPreconditioner::build(const SparseMatrix                     &matrix,
-                           const std::vector<std::vector<double>> &modes)
+  LinearMap
+  make_amg(const SparseMatrix                     &matrix,
+           const std::vector<std::vector<double>> &modes)
   {
-    auto &all = implementation->modes;
-    all.clear();
+    const auto amg = std::make_shared<Amg>();
     for (const auto &mode : modes)
-      all.insert(all.end(), mode.begin(), mode.end());
-    all.resize(std::max<std::size_t>(1, all.size()));
+      amg->modes.insert(amg->modes.end(), mode.begin(), mode.end());
+    amg->modes.resize(std::max<std::size_t>(1, amg->modes.size()));
 
     Teuchos::ParameterList                            parameters;
     TrilinosWrappers::PreconditionAMG::AdditionalData data;
-    data.elliptic              = true;
-    data.higher_order_elements = false;
-    data.smoother_sweeps       = 2;
     data.aggregation_threshold = 0.02;
     std::unique_ptr<Epetra_MultiVector> unused;
-    const auto &trilinos_matrix = matrix.implementation->matrix;
+    const auto &trilinos_matrix = matrix.trilinos->matrix;
     data.set_parameters(parameters, unused, trilinos_matrix);
     parameters.set("null space: type", "pre-computed");
     parameters.set("null space: dimension", static_cast<int>(modes.size()));
-    parameters.set("null space: vectors", all.data());
+    parameters.set("null space: vectors", amg->modes.data());
     // Where the coarsest matrix is singular, ML says so on the terminal, writes
     // it to a file and goes on without it; no parameter turns this off.
     const std::string  file      = "amesos-failure.dat";
     const bool         was_there = std::filesystem::exists(file);
     std::ostringstream said;
     const auto         screen = std::cout.rdbuf(said.rdbuf());
-    std::exception_ptr error;
+    bool               failed = false;
     try
       {
-        implementation->preconditioner.initialize(trilinos_matrix, parameters);
+        amg->preconditioner.initialize(trilinos_matrix, parameters);
       }
     catch (...)
       {
-        error = std::current_exception();
+        failed = true;
       }
     std::cout.rdbuf(screen);
-    const bool failed = error || said.str().find("failed") != std::string::npos;
+    failed = failed || said.str().find("failed") != std::string::npos;
     if (failed && !was_there)
       {
         std::error_code none;
         std::filesystem::remove(file, none);
       }
-    if (Utilities::MPI::max(failed ? 1 : 0,
-                            trilinos_matrix.get_mpi_communicator()) > 0)
-      throw LinearizationError(singular);
+    if (Utilities::MPI::logical_or(failed,
+                                   trilinos_matrix.get_mpi_communicator()))
+      blame_matrix();
+    return {[amg](Vector &dst, const Vector &src) {
+      amg->preconditioner.vmult(dst, src);
+    }};
   }
 
-  void
-  AmgPreconditioner::vmult(Vector &dst, const Vector &src) const
+  LinearMap
+  factorize(const SparseMatrix &matrix)
   {
-    implementation->preconditioner.vmult(dst, src);
-  }
-
-
-  struct DirectSolver::Implementation
-  {
-    SolverControl                  control;
-    TrilinosWrappers::SolverDirect solver{control};
-  };
-
-  DirectSolver::DirectSolver(const SparseMatrix &matrix)
-    : implementation(std::make_unique<Implementation>())
-  {
+    const auto factors = std::make_shared<Factors>();
     try
       {
-        implementation->solver.initialize(matrix.implementation->matrix);
+        factors->solver.initialize(matrix.trilinos->matrix);
       }
     catch (const ExceptionBase &)
       {
-        throw LinearizationError(singular);
+        blame_matrix();
       }
-  }
-
-  DirectSolver::~DirectSolver() = default;
-
-  void
-  DirectSolver::solve(Vector &x, const Vector &b) const
-  {
-    try
-      {
-        implementation->solver.solve(x, b);
-      }
-    catch (const ExceptionBase &)
-      {
-        throw LinearizationError(singular);
-      }
+    return {[factors](Vector &x, const Vector &b) {
+      try
+        {
+          factors->solver.solve(x, b);
+        }
+      catch (const ExceptionBase &)
+        {
+          blame_matrix();
+        }
+    }};
   }
 } // namespace impm

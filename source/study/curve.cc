@@ -2,16 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace impm
 {
   void
   WeightedNorm::add(const double weight, const double size)
   {
-    // The largest of anything and not-a-number is anything.
-    if (!std::isfinite(size))
-      ++n_not_finite;
     weights += weight;
     sum += weight * (norm == Norm::L2 ? size * size : std::abs(size));
     largest = std::max(largest, std::abs(size));
@@ -20,21 +16,14 @@ namespace impm
   double
   WeightedNorm::value(const MPI_Comm communicator) const
   {
-    namespace MPI      = dealii::Utilities::MPI;
-    const double total = MPI::sum(weights, communicator);
-    const double all   = MPI::sum(sum, communicator);
-    const double most  = MPI::max(largest, communicator);
-    if (MPI::sum(n_not_finite, communicator) > 0 || total == 0)
-      return std::numeric_limits<double>::quiet_NaN();
-    switch (norm)
-      {
-        case Norm::L1:
-          return all / total;
-        case Norm::L2:
-          return std::sqrt(all / total);
-        default:
-          return most;
-      }
+    namespace MPI = dealii::Utilities::MPI;
+    const double mean =
+      MPI::sum(sum, communicator) / MPI::sum(weights, communicator);
+    const double most = MPI::max(largest, communicator);
+    // The largest of anything and not-a-number is anything: the mean tells.
+    if (!std::isfinite(mean))
+      return not_a_number;
+    return norm == Norm::max ? most : norm == Norm::L2 ? std::sqrt(mean) : mean;
   }
 
   bool
@@ -51,7 +40,7 @@ namespace impm
   Curve::value(const double at) const
   {
     if (!contains(at))
-      return std::numeric_limits<double>::quiet_NaN();
+      return not_a_number;
     const auto right = std::upper_bound(x.begin(), x.end(), at) - x.begin();
     if (right == 0)
       return y.front();
@@ -74,37 +63,27 @@ namespace impm
     return Curve{std::move(x), std::move(y)};
   }
 
-  std::optional<CurveNorms>
+  Comparison
   compare_curves(const Curve                         &curve,
                  const std::function<double(double)> &reference,
                  const std::vector<double>           &abscissas,
                  const Norm                           norm)
   {
-    std::vector<double> at;
-    std::copy_if(abscissas.begin(),
-                 abscissas.end(),
-                 std::back_inserter(at),
-                 [&](const double x) { return curve.contains(x); });
-    if (at.empty())
-      return std::nullopt;
-
-    WeightedNorm values(norm), references(norm), errors(norm);
-    CurveNorms   norms;
-    for (unsigned int i = 0; i < at.size(); ++i)
+    WeightedNorm references{norm}, errors{norm};
+    Comparison   result;
+    for (auto x = abscissas.begin(); x != abscissas.end(); ++x)
       {
-        const double left = i > 0 ? at[i - 1] : at[i];
-        double weight = 0.5 * ((i + 1 < at.size() ? at[i + 1] : at[i]) - left);
-        if (at.back() == at.front())
-          weight = 1;
-        norms.last_value     = curve.value(at[i]);
-        norms.last_reference = reference(at[i]);
-        values.add(weight, norms.last_value);
-        references.add(weight, norms.last_reference);
-        errors.add(weight, norms.last_value - norms.last_reference);
+        const double left  = x == abscissas.begin() ? *x : *(x - 1);
+        const double right = x + 1 == abscissas.end() ? *x : *(x + 1);
+        const double weight =
+          abscissas.back() == abscissas.front() ? 1 : 0.5 * (right - left);
+        result.value     = curve.value(*x);
+        result.reference = reference(*x);
+        references.add(weight, result.reference);
+        errors.add(weight, result.value - result.reference);
       }
-    norms.value     = values.value(MPI_COMM_SELF);
-    norms.reference = references.value(MPI_COMM_SELF);
-    norms.error     = errors.value(MPI_COMM_SELF);
-    return norms;
+    result.reference_norm = references.value(MPI_COMM_SELF);
+    result.error          = errors.value(MPI_COMM_SELF);
+    return result;
   }
 } // namespace impm

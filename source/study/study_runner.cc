@@ -2,35 +2,32 @@
 #include <impm/base/files.h>
 #include <impm/base/names.h>
 #include <impm/scene/scene.h>
-#include <impm/study/study_process.h>
-#include <impm/study/study_runner.h>
+#include <impm/study/study_report.h>
 
+#include <boost/process/child.hpp>
+#include <boost/process/extend.hpp>
+#include <boost/process/io.hpp>
 #include <nlohmann/json.hpp>
+#include <sys/prctl.h>
 
 #include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <iomanip>
 #include <iostream>
+#include <sstream>
 
 namespace impm
 {
   namespace
   {
-    /** Throws InputError if it is no scene, or has no such figure. */
-    template <int dim>
-    void
-    check_scene(dealii::ParameterHandler       &prm,
-                const std::vector<std::string> &columns)
-    {
-      const auto output  = read_scene<dim>(prm).output;
-      auto       figures = names_of(output.probes);
-      for (const auto &name : names_of(output.reactions))
-        figures.push_back(name);
-      for (const auto &column : columns)
-        require_name(figures, column, "Study/Columns");
-    }
-
-    /** The resolved parameters of a run, which has been found to be a scene. */
+    /**
+     * The resolved parameters of a run. Throws InputError if it is no scene, or
+     * has no such figures.
+     */
     std::string
     resolve(const CommandLine              &line,
             const StudyRun                 &run,
@@ -43,23 +40,25 @@ namespace impm
       std::unique_ptr<ParameterFile> file;
       try
         {
-          file = std::make_unique<ParameterFile>(line.parameter_file,
+          file           = std::make_unique<ParameterFile>(line.parameter_file,
                                                  overrides,
                                                  declare_file);
-          if (scene_dimension(file->handler()) == 3)
-            check_scene<3>(file->handler(), columns);
-          else
-            check_scene<2>(file->handler(), columns);
+          auto      &prm = file->handler();
+          const auto output  = scene_dimension(prm) == 3 ?
+                                 read_scene<3>(prm).output :
+                                 read_scene<2>(prm).output;
+          auto       figures = names_of(output.probes);
+          for (const auto &reaction : output.reactions)
+            figures.push_back(reaction.name);
+          for (const auto &column : columns)
+            require_name(figures, column, "Study/Columns");
           return file->resolved({"Study"});
         }
       catch (const InputError &error)
         {
           throw InputError("",
                            "run '" + run.name + "' of the study: " +
-                             (error.entry.empty() ?
-                                error.what() :
-                                file->locate(error.entry) + ": entry '" +
-                                  error.entry + "': " + error.what()));
+                             (file ? file->describe(error) : error.what()));
         }
     }
 
@@ -83,6 +82,99 @@ namespace impm
       return json.dump(2) + "\n";
     }
 
+    std::vector<std::string>
+    command(const std::string &directory,
+            const CommandLine &line,
+            const StudyRun    &run)
+    {
+      std::vector<std::string> words;
+      if (run.ranks > 1)
+        // env looks for it along the path.
+        words = {"/usr/bin/env", "mpirun", "-np", std::to_string(run.ranks)};
+      words.insert(words.end(),
+                   {std::filesystem::read_symlink("/proc/self/exe").string(),
+                    line.parameter_file,
+                    "--quiet",
+                    "--output",
+                    directory});
+      for (const auto *overrides : {&line.overrides, &run.overrides})
+        for (const auto &override : *overrides)
+          words.insert(words.end(), {"--set", override});
+      return words;
+    }
+
+    /** Why a run failed: its own last message, or what came first. */
+    std::string
+    reason(const std::string &log)
+    {
+      std::istringstream in(log);
+      std::string        line, message, first;
+      const std::string  own = "impm_dealii: ";
+      std::getline(in, line); // the command
+      while (std::getline(in, line))
+        if (line.rfind(own + "warning: ", 0) == 0)
+          continue;
+        else if (line.rfind(own, 0) == 0)
+          message = line.substr(own.size());
+        // mpirun draws lines of dashes.
+        else if (first.empty() &&
+                 line.find_first_not_of("- \t\r") != std::string::npos)
+          first = line;
+      return !message.empty() ? message : !first.empty() ? first : "no message";
+    }
+
+    /**
+     * Runs the program as a process of its own, or under mpirun, into a
+     * directory, where log.txt has its command and what it said. Whatever
+     * becomes of it is a result.
+     */
+    StudyResult
+    run_process(const std::string &directory,
+                const CommandLine &line,
+                const StudyRun    &run)
+    {
+      namespace process = boost::process;
+      auto words        = command(directory, line, run);
+
+      // A summary from before must not be taken for this run's.
+      std::error_code ignored;
+      std::filesystem::create_directories(directory, ignored);
+      std::filesystem::remove(directory + "/summary.json", ignored);
+      const std::string  log = directory + "/log.txt";
+      std::ostringstream said;
+      for (const auto &word : words)
+        said << std::quoted(word) << ' ';
+      replace_file(log, said.str() + "\n");
+      FILE *append = std::fopen(log.c_str(), "a");
+      if (!append)
+        throw SystemError("cannot write '" + log + "'");
+      process::child child(
+        words,
+        (process::std_out & process::std_err) > append,
+        process::std_in < process::null,
+        // It does not go on when the study is killed.
+        process::extend::on_exec_setup = [](auto &) {
+          prctl(PR_SET_PDEATHSIG, SIGTERM);
+        });
+      std::fclose(append);
+      child.wait();
+
+      auto      result = read_result(directory).value_or(StudyResult());
+      const int state  = child.native_exit_code();
+      if (WIFSIGNALED(state))
+        {
+          result.exit_code = 128 + WTERMSIG(state); // as a shell has it
+          result.status = std::string("killed: ") + strsignal(WTERMSIG(state));
+        }
+      else
+        {
+          result.exit_code = WEXITSTATUS(state);
+          if (result.exit_code != 0 || !result.done())
+            result.status = reason(content_of(log));
+        }
+      return result;
+    }
+
     /**
      * All repeats of a run; the first that failed stands for it, else the
      * first, with the median of the wall times.
@@ -93,7 +185,7 @@ namespace impm
                 const StudyRun    &run,
                 const std::string &parameters,
                 const unsigned int repeat,
-                unsigned int      &n_kept)
+                bool              &all_kept)
     {
       StudyResult         result;
       std::vector<double> seconds;
@@ -103,32 +195,17 @@ namespace impm
             k == 1 ? directory : directory + "/repeat_" + std::to_string(k);
           const auto kept = kept_result(here, parameters, run.ranks);
           const auto made = kept ? *kept : run_process(here, line, run);
-          n_kept += kept ? 1 : 0;
-          if (k == 1 || !made.done())
-            result = made;
+          all_kept &= kept.has_value();
           if (!made.done())
-            return result;
+            return made;
+          if (k == 1)
+            result = made;
           seconds.push_back(made.wall_seconds);
         }
       std::sort(seconds.begin(), seconds.end());
-      const unsigned int half = repeat / 2;
-      result.wall_seconds     = repeat % 2 == 1 ?
-                                  seconds[half] :
-                                  (seconds[half - 1] + seconds[half]) / 2;
+      result.wall_seconds =
+        (seconds[(repeat - 1) / 2] + seconds[repeat / 2]) / 2;
       return result;
-    }
-
-    void
-    list_runs(const std::vector<StudyRun> &runs)
-    {
-      for (const auto &run : runs)
-        {
-          std::cout << run.name << ": ranks " << run.ranks;
-          for (const auto &override : run.overrides)
-            std::cout << " | " << override;
-          std::cout << '\n';
-        }
-      std::cout << runs.size() << " runs" << std::endl;
     }
   } // namespace
 
@@ -137,7 +214,7 @@ namespace impm
   {
     auto           &prm  = file.handler();
     const StudySpec spec = read_study(prm);
-    const auto      runs = expand(spec);
+    auto            runs = expand(spec);
     for (const auto &override : line.overrides)
       for (const auto &list : spec.lists)
         for (const auto &entry : list.entries)
@@ -148,9 +225,16 @@ namespace impm
     std::vector<std::string> parameters;
     for (const auto &run : runs)
       parameters.push_back(resolve(line, run, spec.columns));
-    if (line.action == CommandLine::Action::check)
+    if (line.check)
       {
-        list_runs(runs);
+        for (const auto &run : runs)
+          {
+            std::cout << run.name << ": ranks " << run.ranks;
+            for (const auto &override : run.overrides)
+              std::cout << " | " << override;
+            std::cout << '\n';
+          }
+        std::cout << runs.size() << " runs" << std::endl;
         return;
       }
 
@@ -173,38 +257,43 @@ namespace impm
     if (speaks)
       std::cout << "study " << name << ": " << runs.size() << " runs into "
                 << directory << std::endl;
-    StudyResults results(runs.size());
-    bool         any_done = false;
     for (unsigned int r = 0; r < runs.size(); ++r)
       {
-        unsigned int n_kept = 0;
-        results[r]          = run_repeats(directory + "/" + runs[r].name,
+        auto &run  = runs[r];
+        bool  kept = true;
+        run.result = run_repeats(directory + "/" + run.name,
                                  line,
-                                 runs[r],
+                                 run,
                                  parameters[r],
                                  spec.repeat,
-                                 n_kept);
-        any_done |= results[r]->done();
+                                 kept);
         // Whoever stops the study here keeps what it has found.
-        replace_file(directory + "/study.csv", study_csv(spec, runs, results));
+        replace_file(directory + "/study.csv", study_csv(spec, runs));
         if (speaks)
-          std::cout << "  " << r + 1 << '/' << runs.size() << ' '
-                    << runs[r].name << ": "
-                    << (n_kept == spec.repeat ? "kept, " : "")
-                    << results[r]->status << ", " << std::setprecision(3)
-                    << results[r]->wall_seconds << " s" << std::endl;
+          std::cout << "  " << r + 1 << '/' << runs.size() << ' ' << run.name
+                    << ": " << (kept ? "kept, " : "") << run.result.status
+                    << ", " << std::setprecision(3) << run.result.wall_seconds
+                    << " s" << std::endl;
       }
 
-    const auto best = find_best(results);
-    const auto text = order_tables(spec, runs, results) + best_text(best, runs);
+    const auto [best_csv, best_text] = find_best(runs);
+    const auto text                  = order_tables(spec, runs) + best_text;
     replace_file(directory + "/study.txt", text);
-    replace_file(directory + "/best.csv", best_csv(best, runs));
+    replace_file(directory + "/best.csv", best_csv);
     if (speaks)
       std::cout << '\n' << text << std::flush;
-    if (!any_done)
+    if (std::none_of(runs.begin(), runs.end(), [](const StudyRun &run) {
+          return run.result.done();
+        }))
       throw ComputationError("none of the " + std::to_string(runs.size()) +
                              " runs of the study went to its end; the first "
                              "says: " +
-                             results[0]->status);
+                             runs[0].result.status);
+  }
+
+  bool
+  is_started_by_mpi()
+  {
+    return std::getenv("OMPI_COMM_WORLD_SIZE") || std::getenv("PMI_SIZE");
   }
 } // namespace impm

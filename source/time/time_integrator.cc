@@ -1,98 +1,31 @@
 #include <impm/time/time_integrator.h>
 
 #include <cmath>
-#include <limits>
 
 namespace impm
 {
   namespace
   {
-    class QuasiStatic : public TimeIntegrator
-    {
-    public:
-      bool
-      has_inertia() const override
-      {
-        return false;
-      }
-
-      double
-      mass_factor(double) const override
-      {
-        return 0;
-      }
-
-      double
-      force_factor() const override
-      {
-        return 1;
-      }
-
-      double
-      stable_step(double) const override
-      {
-        return std::numeric_limits<double>::infinity();
-      }
-
-      void
-      known_acceleration(double,
-                         const Vector &,
-                         const Vector &,
-                         Vector &known) const override
-      {
-        known = 0;
-      }
-
-      void
-      end_motion(double,
-                 const Vector &,
-                 const Vector &,
-                 const Vector &,
-                 Vector &,
-                 Vector &) const override
-      {}
-    };
-
     /**
      * Sulsky & Kaul (2004), eq. 2.4.1 with u = dt v^L (eq. 2.3.2): positions
      * move with the velocity at the end of the step whatever theta is. Explicit
-     * with theta = 0 (section 2.3.1).
+     * with theta = 0 (section 2.3.1). Without inertia theta is 1.
      */
     class Theta : public TimeIntegrator
     {
     public:
-      explicit Theta(const double theta)
-        : theta(theta)
-      {}
-
-      bool
-      has_inertia() const override
-      {
-        return true;
-      }
-
-      double
-      mass_factor(const double dt) const override
-      {
-        return 1 / (dt * dt);
-      }
-
-      double
-      force_factor() const override
-      {
-        return theta;
-      }
-
       /**
        * With d = 1 + theta (omega dt)^2, (x, dt v) is multiplied by a matrix of
        * determinant 1 / d and trace (d + 1 - (omega dt)^2) / d: the eigenvalue
        * -1 is passed where (1 - 2 theta) (omega dt)^2 = 4.
        */
-      double
-      stable_step(const double frequency) const override
+      explicit Theta(const TimeSpec &spec)
       {
-        return theta >= 0.5 ? std::numeric_limits<double>::infinity() :
-                              2 / (std::sqrt(1 - 2 * theta) * frequency);
+        mass         = spec.has_inertia() ? 1 : 0;
+        force        = spec.theta;
+        start_forces = force < 1;
+        if (force < 0.5)
+          stable_angle = 2 / std::sqrt(1 - 2 * force);
       }
 
       void
@@ -114,9 +47,6 @@ namespace impm
       {
         end_velocity.equ(1 / dt, u);
       }
-
-    private:
-      const double theta;
     };
 
     /**
@@ -134,55 +64,22 @@ namespace impm
     class Newmark : public TimeIntegrator
     {
     public:
-      Newmark(const double beta, const double gamma, const bool keeps)
-        : beta(beta)
-        , gamma(gamma)
-        , keeps(keeps)
-      {}
-
-      bool
-      has_inertia() const override
-      {
-        return true;
-      }
-
-      bool
-      keeps_acceleration() const override
-      {
-        return keeps;
-      }
-
-      double
-      mass_factor(const double dt) const override
-      {
-        return (keeps ? 1 / beta : 2) / (dt * dt);
-      }
-
-      double
-      force_factor() const override
-      {
-        return keeps ? 1 : 2 * beta;
-      }
-
-      /** For the acceleration, whatever the factor is. */
-      bool
-      needs_start_forces() const override
-      {
-        return !keeps;
-      }
-
       /**
-       * (gamma / 2 - beta) (omega dt)^2 <= 1 (Hughes 1987, section 9.1, without
-       * damping). With forces at both ends, too: a = -f(0) / m is a_end of the
-       * step before wherever mass and forces are still the same, so that the
-       * same matrix multiplies (x, v).
+       * Stable where (gamma / 2 - beta) (omega dt)^2 <= 1 (Hughes 1987, section
+       * 9.1, without damping). With forces at both ends, too: a = -f(0) / m is
+       * a_end of the step before wherever mass and forces are still the same,
+       * so that the same matrix multiplies (x, v).
        */
-      double
-      stable_step(const double frequency) const override
+      explicit Newmark(const TimeSpec &spec)
+        : beta(spec.beta)
+        , gamma(spec.gamma)
       {
-        return 2 * beta >= gamma ?
-                 std::numeric_limits<double>::infinity() :
-                 1 / (std::sqrt(gamma / 2 - beta) * frequency);
+        acceleration_kept = spec.keeps_acceleration;
+        start_forces      = !acceleration_kept;
+        mass              = acceleration_kept ? 1 / beta : 2;
+        force             = acceleration_kept ? 1 : 2 * beta;
+        if (2 * beta < gamma)
+          stable_angle = 1 / std::sqrt(gamma / 2 - beta);
       }
 
       void
@@ -191,7 +88,7 @@ namespace impm
                          const Vector &acceleration,
                          Vector       &known) const override
       {
-        if (keeps)
+        if (acceleration_kept)
           {
             known.equ(1 / (beta * dt), velocity);
             known.add(1 / (2 * beta) - 1, acceleration);
@@ -218,23 +115,14 @@ namespace impm
 
     private:
       const double beta, gamma;
-      const bool   keeps;
     };
   } // namespace
 
   std::unique_ptr<TimeIntegrator>
   make_time_integrator(const TimeSpec &spec)
   {
-    switch (spec.integrator)
-      {
-        case Integrator::quasi_static:
-          return std::make_unique<QuasiStatic>();
-        case Integrator::newmark:
-          return std::make_unique<Newmark>(spec.beta,
-                                           spec.gamma,
-                                           spec.keeps_acceleration);
-        default:
-          return std::make_unique<Theta>(spec.theta);
-      }
+    if (spec.integrator == Integrator::newmark)
+      return std::make_unique<Newmark>(spec);
+    return std::make_unique<Theta>(spec);
   }
 } // namespace impm

@@ -9,14 +9,6 @@ namespace impm
   /** What the user asked for on the command line. */
   struct CommandLine
   {
-    enum class Action
-    {
-      run,
-      check,
-      print_parameters,
-      print_version,
-      print_help
-    };
     enum class Verbosity
     {
       quiet,
@@ -24,7 +16,8 @@ namespace impm
       verbose
     };
 
-    Action                   action    = Action::run;
+    std::string              answer; ///< to --help and the like; nothing is run
+    bool                     check     = false; ///< but do not run
     bool                     study     = false; ///< of the Study section
     Verbosity                verbosity = Verbosity::normal;
     std::string              parameter_file;
@@ -35,9 +28,6 @@ namespace impm
   /** Throws InputError when the words are not of the form that --help shows. */
   CommandLine
   parse_command_line(int argc, const char *const *argv);
-
-  const char *
-  command_line_help();
 } // namespace impm
 
 #endif

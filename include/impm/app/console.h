@@ -5,6 +5,8 @@
 #include <impm/output/history.h>
 
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace impm
 {
@@ -12,12 +14,11 @@ namespace impm
   class Console
   {
   public:
-    Console(CommandLine::Verbosity verbosity, bool is_first_rank);
+    Console(const CommandLine::Verbosity verbosity, const bool is_first_rank)
+      : verbosity(is_first_rank ? verbosity : CommandLine::Verbosity::quiet)
+    {}
 
-    /**
-     * One line a row of the history, and a progress bar if a person is
-     * watching.
-     */
+    /** One line a row of the history; a progress bar if a person watches. */
     void
     step(const StepReport                                  &report,
          double                                             end_time,
@@ -37,7 +38,6 @@ namespace impm
 
   private:
     const CommandLine::Verbosity verbosity;
-    const bool                   speaks, is_terminal;
     bool                         has_header = false, has_bar = false;
   };
 } // namespace impm

@@ -49,23 +49,36 @@ namespace impm
       return dF;
     }
 
-    /** factor * stress * inverse^T. */
+    /** A symmetric tensor as a list. */
+    List
+    list(const dealii::SymmetricTensor<2, 3> &tensor) const
+    {
+      List result{};
+      for (unsigned int i = 0; i < dim; ++i)
+        for (unsigned int j = 0; j < dim; ++j)
+          result[dim * i + j] = tensor[i][j];
+      if (axisymmetric)
+        result[dim * dim] = tensor[2][2];
+      return result;
+    }
+
+    /** factor * L^T list, where L carries a gradient on: g inverse. */
     void
-    carry_back_stress(const dealii::SymmetricTensor<2, 3> &stress,
-                      const dealii::Tensor<2, 3>          &inverse,
-                      const double                         factor,
-                      double                              *result) const
+    carry_back(const List                 &list,
+               const dealii::Tensor<2, 3> &inverse,
+               const double                factor,
+               double                     *result) const
     {
       for (unsigned int i = 0; i < dim; ++i)
         for (unsigned int j = 0; j < dim; ++j)
           {
             double sum = 0;
             for (unsigned int k = 0; k < dim; ++k)
-              sum += stress[i][k] * inverse[j][k];
+              sum += list[dim * i + k] * inverse[j][k];
             result[dim * i + j] = factor * sum;
           }
       if (axisymmetric)
-        result[dim * dim] = factor * stress[2][2] * inverse[2][2];
+        result[dim * dim] = factor * list[dim * dim] * inverse[2][2];
     }
 
     /**
@@ -103,7 +116,7 @@ namespace impm
         }
     }
 
-    /** factor * L^T matrix L, where L carries a gradient on: g inverse. */
+    /** factor * L^T matrix L. */
     void
     carry_back_tangent(const double               *matrix,
                        const dealii::Tensor<2, 3> &inverse,
@@ -149,25 +162,6 @@ namespace impm
             result[(dim * i + j) * size + h] = hoop * row;
             result[h * size + dim * i + j]   = hoop * column;
           }
-    }
-
-    /** factor * L^T vector. */
-    void
-    carry_back(const double               *vector,
-               const dealii::Tensor<2, 3> &inverse,
-               const double                factor,
-               double                     *result) const
-    {
-      for (unsigned int i = 0; i < dim; ++i)
-        for (unsigned int j = 0; j < dim; ++j)
-          {
-            double sum = 0;
-            for (unsigned int k = 0; k < dim; ++k)
-              sum += vector[dim * i + k] * inverse[j][k];
-            result[dim * i + j] = factor * sum;
-          }
-      if (axisymmetric)
-        result[dim * dim] = factor * vector[dim * dim] * inverse[2][2];
     }
 
   private:

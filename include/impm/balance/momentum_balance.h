@@ -1,9 +1,9 @@
 #ifndef impm_balance_momentum_balance_h
 #define impm_balance_momentum_balance_h
 
-#include <impm/balance/residual_norm.h>
 #include <impm/balance/terms/term.h>
 #include <impm/balance/velocity_smoothing.h>
+#include <impm/grid/step_constraints.h>
 #include <impm/solve/nonlinear_system.h>
 
 #include <memory>
@@ -12,43 +12,44 @@
 namespace impm
 {
   /**
-   * The balance of momentum on the grid over one step: a sum of terms,
-   * condensed to the nodes that are free. Unknown is the grid's displacement
-   * increment u:
+   * The balance of momentum on the grid over one step, condensed to the nodes
+   * that are free. Unknown is the grid's displacement increment u:
    *
    *   w f(u) + (1 - w) f(0) + n(u) = 0,
    *
-   * with the terms f that strain has to do with (points, ghost penalty, loads),
-   * weighed by the integrator, and those n of the nodes alone, whose derivative
-   * is a diagonal (inertia, holding). In the momentum formulation f feels an
-   * increment that is smoothed.
+   * with the sums f of terms that strain has to do with, weighed by the
+   * integrator, and n of those of the nodes alone. A scene has the terms that
+   * it needs and no others. In the momentum formulation f feels an increment
+   * that is smoothed.
    */
   template <int dim>
-  class MomentumBalance : public NonlinearSystem
+  class MomentumBalance final : public NonlinearSystem
   {
   public:
-    using Terms = std::vector<std::unique_ptr<Term>>;
-
+    /** What it consists of, and lives no longer than. */
     struct Parts
     {
-      Terms  strain_terms, node_terms;
-      double end_weight;   ///< w
-      Vector start_forces; ///< f(0) (N), where w is below one
-      /** What residuals are measured by, and whether beside what acts, too. */
-      const ResidualNorm *norm;
-      bool                minds_forces_at_work;
-      bool                has_potential;
+      const Discretization<dim>  &discretization;
+      const StepConstraints<dim> &constraints;
+      const ResidualNorm         &norm;
+      std::vector<Term *>         strain_terms, node_terms;
+      const Vector               &start_forces; ///< f(0) (N), if w is below one
+      const Vector               &mass;         ///< (kg), or empty
+      /** Of the momentum formulation, or null. */
+      const VelocitySmoothing<dim> *smoothing;
+      double                        end_weight; ///< w
+      bool minds_forces_at_work; ///< whether residuals are small beside these
+      bool has_potential;
       bool has_rotations; ///< whether a rotation of the body is free
-      /** Of the momentum formulation, or null; and dt v (m), the mass (kg). */
-      const VelocitySmoothing<dim> *smoothing = nullptr;
-      Vector                        start_increment;
-      const Vector                 *mass = nullptr;
     };
 
-    MomentumBalance(const Discretization<dim>  &discretization,
-                    const StepConstraints<dim> &constraints,
-                    Parts                       parts,
-                    WorkCounts                 &counts);
+    MomentumBalance(const Parts &parts, WorkCounts &work_counts)
+      : parts(parts)
+    {
+      counts = &work_counts;
+      for (Vector *vector : {&forces, &free_residual, &work, &smooth})
+        initialize(*vector);
+    }
 
     Evaluation
     evaluate(const Vector &u, bool with_tangent = true) override;
@@ -62,7 +63,7 @@ namespace impm
     std::vector<double>
     norms_of(const Vector &force) const override
     {
-      return parts.norm->largest_nearby(force);
+      return parts.norm.largest_nearby(force);
     }
 
     bool
@@ -75,7 +76,11 @@ namespace impm
     work_along(const Vector &direction, const Vector &force) const override;
 
     void
-    project_tangent() override;
+    project_tangent() override
+    {
+      for (Term *term : parts.strain_terms)
+        term->project_tangent();
+    }
 
     /**
      * dst = C^T K C src, identity on constrained values; C sets hanging nodes
@@ -107,37 +112,37 @@ namespace impm
     void
     initialize(Vector &vector) const override
     {
-      discretization.initialize(vector);
+      parts.discretization.initialize(vector);
     }
 
     void
     set_prescribed(Vector &u) const override
     {
-      constraints.set_prescribed(u);
+      parts.constraints.set_prescribed(u);
     }
 
     void
     interpolate_hanging(Vector &vector) const override
     {
-      discretization.interpolate_hanging(vector);
+      parts.discretization.interpolate_hanging(vector);
     }
 
     bool
     is_constrained(const unsigned int local_index) const override
     {
-      return constraints.is_constrained[local_index];
+      return parts.constraints.is_constrained[local_index];
     }
 
     const Vector *
     weight_of_unknowns() const override
     {
-      return parts.smoothing != nullptr ? parts.mass : nullptr;
+      return parts.smoothing ? &parts.mass : nullptr;
     }
 
     double
     length_scale() const override
     {
-      return discretization.smallest_cell_extent;
+      return parts.discretization.smallest_cell_extent;
     }
 
     /** What faces and rigid bodies exert (N), as the integrator weighs it over
@@ -156,15 +161,43 @@ namespace impm
     forces_of_strain(const Vector &u) const;
 
   private:
-    /** `strain_src` is what strains, `src` what the nodes do. */
-    void
-    apply_tangent(Vector       &dst,
-                  const Vector &strain_src,
-                  const Vector &src) const;
+    /** What strains for an increment: this one, or what smoothing makes of it,
+     * in `smooth`. */
+    const Vector &
+    strain_increment(const Vector &u) const
+    {
+      if (!parts.smoothing)
+        return u;
+      parts.smoothing->apply(u, smooth);
+      return smooth;
+    }
 
-    /** Fills a matrix with what strain costs. */
+    /** The same for a direction, with its hanging nodes set in `work`. */
+    const Vector &
+    strain_direction() const
+    {
+      interpolate_hanging(work);
+      if (!parts.smoothing)
+        return work;
+      parts.smoothing->apply_derivative(work, smooth);
+      return smooth;
+    }
+
+    /** Adds f(u) for what strains. Collective. */
     void
-    assemble_stiffness(SparseMatrix &matrix) const;
+    add_forces_of_strain(const Vector &strain_u, Vector &result) const;
+
+    /** dst = K C times `work`, condensed. */
+    void
+    apply_tangent(Vector &dst) const;
+
+    std::unique_ptr<SparseMatrix>
+    empty_matrix() const
+    {
+      return std::make_unique<SparseMatrix>(
+        *parts.discretization.numbering->partitioner,
+        parts.constraints.constraints);
+    }
 
     /** Takes apart the residual that `forces` have, which came of `strain
      * forces` alone before. */
@@ -173,9 +206,7 @@ namespace impm
           const std::vector<double> &strain_forces,
           Evaluation                &result) const;
 
-    const Discretization<dim>  &discretization;
-    const StepConstraints<dim> &constraints;
-    const Parts                 parts;
+    const Parts parts;
 
     Vector         forces, free_residual;
     mutable Vector work, smooth;

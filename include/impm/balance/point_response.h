@@ -2,12 +2,11 @@
 #define impm_balance_point_response_h
 
 #include <impm/balance/kinematics.h>
-#include <impm/balance/plane_stress.h>
+#include <impm/balance/residual_norm.h>
 #include <impm/balance/volume_average.h>
 #include <impm/points/material_points.h>
 
 #include <array>
-#include <optional>
 #include <vector>
 
 namespace impm
@@ -25,17 +24,14 @@ namespace impm
      * For a step of length dt (s), with gradients that are zero. Evaluations of
      * laws are counted in `n_evaluations`.
      */
-    PointResponse(const Bodies<dim>         &bodies,
-                  const MaterialPoints<dim> &points,
+    PointResponse(const MaterialPoints<dim> &points,
                   double                     dt,
                   unsigned long             &n_evaluations);
 
-    /**
-     * Evaluates the laws at `gradients`; adds V0 times their potential.
-     * Returns false when a point has no stress.
-     */
+    /** Evaluates the laws at `gradients`. Returns false when a point has no
+     * stress. */
     bool
-    evaluate(bool with_tangent, double &potential);
+    evaluate(bool with_tangent);
 
     /**
      * Finds `start_stresses`, while the gradients are zero, whatever the
@@ -68,7 +64,13 @@ namespace impm
      * thickness that plane stress takes.
      */
     dealii::Tensor<2, 3>
-    increment(unsigned int point) const;
+    increment(const unsigned int point) const
+    {
+      auto dF = kinematics.deformation(&gradients[point * kinematics.size]);
+      if (is_plane_stress)
+        dF[2][2] = thickening[point];
+      return average.includes(point) ? average.average(point, dF) : dF;
+    }
 
     const double *
     trial_history(const unsigned int point) const
@@ -84,11 +86,9 @@ namespace impm
       return &end_stresses[point * n_stress];
     }
 
-    /** Adds the squares of the points' stresses (N m)^2, by groups of bodies.
-     */
-    void
-    add_squares_of_stresses(const std::vector<unsigned int> &group_of_body,
-                            std::vector<double>             &squares) const;
+    /** Squares of the points' stresses (N m)^2, by the groups of a norm. */
+    std::vector<double>
+    squares_of_stresses(const ResidualNorm &norm) const;
 
     const Kinematics<dim> kinematics;
     VolumeAverage<dim>    average;
@@ -98,6 +98,7 @@ namespace impm
     work() const;
 
     std::vector<double> gradients, stresses, start_stresses;
+    double              potential = 0; ///< sum of V0 times those of the laws
 
   private:
     /** Consecutive points of one law, on their way through evaluate(). */
@@ -110,31 +111,29 @@ namespace impm
 
       unsigned int                           first, size;
       const Material                        *law;
-      List<dealii::Tensor<2, 3>>             start, increment, total, inverse;
+      List<dealii::Tensor<2, 3>>             start, increment, total;
       List<const double *>                   history;
       List<double *>                         trial_history;
       List<Material::Response>               response;
       List<typename Kinematics<dim>::Matrix> spatial; ///< tangents
     };
 
-    /** Finds law and size of the batch that starts at `first`. */
-    void
-    begin_batch(Batch &batch) const;
-
-    /** Fills in the rest. Returns false when a point has no stress. */
+    /** Fills the batch that starts at `first`. Returns false when a point has
+     * no stress. */
     bool
     evaluate_law(Batch &batch, bool with_tangent);
 
-    /** Turns it into stresses and tangents; adds V0 times the potential. */
+    /** Turns it into stresses, tangents and potential. */
     void
-    carry_back(Batch &batch, bool with_tangent, double &potential);
+    carry_back(Batch &batch, bool with_tangent);
 
     const MaterialPoints<dim> &points;
-    std::optional<PlaneStress> plane_stress;
+    const bool                 is_plane_stress;
     double                     dt;
     unsigned long             &n_evaluations;
-    std::vector<double>        tangents, histories, end_stresses;
-    const unsigned int         n_stress;   ///< values of a stress, if carried
+    std::vector<double>        tangents, histories;
+    const unsigned int         n_stress; ///< values of a stress, if carried
+    std::vector<double>        end_stresses;
     std::vector<double>        thickening; ///< dF_33 in plane stress
   };
 } // namespace impm

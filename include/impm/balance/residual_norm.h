@@ -58,7 +58,6 @@ namespace impm
     std::vector<double> stiffness;
 
     std::vector<unsigned int> group_of_body; ///< by number in the scene
-    const bool                is_by_body;
 
   private:
     struct Share
@@ -74,8 +73,8 @@ namespace impm
 
     /** By group; empty if there is one group only. */
     std::vector<std::vector<Share>> shares;
-    /** Whether groups touch, directly or by others. */
-    std::vector<std::vector<char>> nearby;
+    /** Whether groups g and h touch, directly or by others, at [n g + h]. */
+    std::vector<unsigned int> nearby;
   };
 } // namespace impm
 

@@ -2,12 +2,13 @@
 #define impm_balance_step_problem_h
 
 #include <impm/balance/momentum_balance.h>
-#include <impm/balance/point_response.h>
+#include <impm/balance/terms/ghost_penalty.h>
+#include <impm/balance/terms/internal_forces.h>
 #include <impm/balance/terms/loads.h>
+#include <impm/balance/terms/nodal_forces.h>
 #include <impm/footprints/footprint_builder.h>
-#include <impm/footprints/gather.h>
+#include <impm/footprints/transfer.h>
 #include <impm/grid/populated_cells.h>
-#include <impm/grid/step_result.h>
 #include <impm/scene/scene.h>
 #include <impm/time/time_integrator.h>
 
@@ -18,7 +19,7 @@ namespace impm
   /**
    * Everything that belongs to one step and dies with it: where the points
    * touch the grid, what holds its nodes, their motion at the start, the trial
-   * state of the points, and the balance of momentum with its terms. Making
+   * state of the points, the forces, and the balance of momentum. Making
    * one is the one way to prepare a step: from points and grid as they are,
    * whether they come from the step before, from another grid or from disk.
    */
@@ -76,6 +77,10 @@ namespace impm
                0.;
     }
 
+    /** Those of the terms that are no physics: ghost penalty, springs. */
+    std::vector<const Term *>
+    stabilization() const;
+
     const double          time, dt;
     const TimeIntegrator &integrator;
 
@@ -89,43 +94,32 @@ namespace impm
     const unsigned int n_limited_boxes; ///< of all ranks
     /** Neither constrained nor unused, of all ranks. */
     const unsigned int n_active_dofs;
-    unsigned int       n_held_cells = 0;       ///< isolated ones
-    const Loads       *loads        = nullptr; ///< one of the terms
-    /** Those of the terms that are no physics: ghost penalty, holding. */
-    std::vector<const Term *> stabilization;
+
+    // The terms of the balance, or null.
+    const std::unique_ptr<InternalForces<dim>> internal_forces;
+    const std::unique_ptr<GhostPenalty<dim>>   ghost_penalty;
+    const std::unique_ptr<Loads<dim>>          loads;
+
+    const Vector start_forces; ///< f(0) (N), if asked for, or empty
     /** What the integrator takes for the acceleration at the start: gathered,
      * or from the forces then (m/s^2). */
-    Vector                                              start_acceleration;
+    const Vector                                        start_acceleration;
+    unsigned int                                        n_held_cells = 0;
+    const std::unique_ptr<NodalForces>                  nodal_forces;
     const std::unique_ptr<const VelocitySmoothing<dim>> smoothing; ///< or null
     MomentumBalance<dim>                                balance;
 
   private:
-    using Parts = typename MomentumBalance<dim>::Parts;
+    /** Finds the stresses at the start; returns f(0), if it is asked for. */
+    Vector
+    find_start_forces();
 
-    /** The terms that this scene needs, and no others. */
-    Parts
-    make_parts(const Scene<dim>          &scene,
-               const BackgroundGrid<dim> &grid,
-               const MaterialPoints<dim> &points);
+    Vector
+    find_start_acceleration() const;
 
-    void
-    add_strain_terms(const Scene<dim>          &scene,
-                     const BackgroundGrid<dim> &grid,
-                     const MaterialPoints<dim> &points,
-                     Parts                     &parts);
-
-    /** Stresses at the start; f(0) and the acceleration that it gives, if they
-     * are asked for. */
-    void
-    find_start_forces(Parts &parts);
-
-    void
-    add_node_terms(const Scene<dim>          &scene,
-                   const MaterialPoints<dim> &points,
-                   Parts                     &parts);
-
-    unsigned int
-    count_active_dofs() const;
+    std::unique_ptr<NodalForces>
+    make_nodal_forces(const MaterialPoints<dim> &points,
+                      double                     isolated_stiffness);
   };
 } // namespace impm
 

@@ -1,11 +1,9 @@
 #ifndef impm_balance_velocity_smoothing_h
 #define impm_balance_velocity_smoothing_h
 
-#include <impm/footprints/footprints.h>
-#include <impm/grid/step_constraints.h>
+#include <impm/footprints/transfer.h>
 #include <impm/solve/sparse_matrix.h>
 
-#include <memory>
 #include <vector>
 
 namespace impm
@@ -28,19 +26,18 @@ namespace impm
   class VelocitySmoothing
   {
   public:
-    /** For the lumped mass (kg) of this step. Collective. */
+    /** For a step of length dt (s). Collective. */
     VelocitySmoothing(const MaterialPoints<dim>  &points,
                       const Footprints<dim>      &footprints,
                       const StepConstraints<dim> &constraints,
                       const Discretization<dim>  &discretization,
-                      const Vector               &mass);
+                      const NodalMotion          &motion,
+                      double                      dt);
 
-    /**
-     * result = s(u), with `start` = dt v (m). Ghosts and hanging nodes of the
-     * result are up to date. Collective.
-     */
+    /** result = s(u). Ghosts and hanging nodes of the result are up to date.
+     * Collective. */
     void
-    apply(const Vector &u, const Vector &start, Vector &result) const;
+    apply(const Vector &u, Vector &result) const;
 
     /** The derivative of s: result = A u, u itself where prescribed. */
     void
@@ -50,31 +47,21 @@ namespace impm
     // constraints have been condensed into, keeps the diagonal of constrained
     // values. It couples nodes that are two cells apart.
 
-    /** A diagonal (1/kg), one where constrained. */
-    Vector
-    scaling() const;
+    /** M^-1 (1/kg), one where constrained. */
+    Vector scaling;
 
-    /** S^T m S (kg), identity where constrained. Collective. */
-    std::unique_ptr<SparseMatrix>
-    make_spread_mass() const;
+    /** Makes S^T m S (kg) of an empty matrix, identity where constrained.
+     * Collective. */
+    void
+    fill_spread_mass(SparseMatrix &matrix) const;
 
   private:
-    /** A component of the nodes of a patch, by global index. */
-    SparseMatrix::Dofs
-    dofs(const typename Footprints<dim>::Patch &patch,
-         unsigned int                           component) const;
-
-    /** sum_p m_p S_pI S_pJ of the points and nodes of a patch (kg). */
-    void
-    consistent_mass(const typename Footprints<dim>::Patch &patch,
-                    dealii::FullMatrix<double>            &matrix) const;
-
     const MaterialPoints<dim>  &points;
     const Footprints<dim>      &footprints;
     const StepConstraints<dim> &constraints;
     const Discretization<dim>  &discretization;
+    Vector                      start; ///< dt v (m)
 
-    Vector                                      inverse_mass;
     mutable Vector                              change;
     mutable std::vector<dealii::Tensor<1, dim>> at_points;
   };

@@ -3,7 +3,6 @@
 
 #include <impm/balance/kinematics.h>
 #include <impm/points/material_points.h>
-#include <impm/scene/scene.h>
 
 #include <vector>
 
@@ -30,8 +29,7 @@ namespace impm
   {
   public:
     /** Groups the points as they are. */
-    VolumeAverage(const Bodies<dim>         &bodies,
-                  const MaterialPoints<dim> &points,
+    VolumeAverage(const MaterialPoints<dim> &points,
                   const Kinematics<dim>     &kinematics);
 
     /** Whether a point takes part. */
@@ -87,9 +85,7 @@ namespace impm
     std::vector<double> group_square; ///< sum of c_p over the group
 
   private:
-    const MaterialPoints<dim>  &points;
     const Kinematics<dim>      &kinematics;
-    bool                        used = false;
     std::vector<double>         start_volume, jacobian;     ///< by point
     std::vector<double>         group_volume, group_change; ///< sums
     std::vector<double>         group_pressure;             ///< sum of V0 pi

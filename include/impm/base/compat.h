@@ -5,39 +5,33 @@
 #include <deal.II/base/index_set.h>
 
 #include <deal.II/lac/affine_constraints.h>
-#include <deal.II/lac/solver_gmres.h>
 
-namespace impm
+/** What deal.II 9.6 says otherwise than 9.4: nobody else asks for its version.
+ */
+namespace impm::compat
 {
-  /** What deal.II 9.6 says otherwise than 9.4: the one place that asks for its
-   * version. */
-  namespace compat
+  inline dealii::AffineConstraints<double>
+  make_constraints([[maybe_unused]] const dealii::IndexSet &owned,
+                   const dealii::IndexSet                  &relevant)
   {
-    inline dealii::AffineConstraints<double>
-    make_constraints([[maybe_unused]] const dealii::IndexSet &owned,
-                     const dealii::IndexSet                  &relevant)
-    {
 #if DEAL_II_VERSION_GTE(9, 6, 0)
-      return dealii::AffineConstraints<double>(owned, relevant);
+    return dealii::AffineConstraints<double>(owned, relevant);
 #else
-      return dealii::AffineConstraints<double>(relevant);
+    return dealii::AffineConstraints<double>(relevant);
 #endif
-    }
+  }
 
-    /** How many directions GMRES takes before it starts again. */
-    template <typename VectorType>
-    void
-    set_basis_size(
-      typename dealii::SolverGMRES<VectorType>::AdditionalData &data,
-      const unsigned int                                        size)
-    {
+  /** How many directions GMRES takes before it starts again. */
+  template <typename AdditionalData>
+  void
+  set_basis_size(AdditionalData &data, const unsigned int size)
+  {
 #if DEAL_II_VERSION_GTE(9, 6, 0)
-      data.max_basis_size = size;
+    data.max_basis_size = size;
 #else
-      data.max_n_tmp_vectors = size + 2;
+    data.max_n_tmp_vectors = size + 2;
 #endif
-    }
-  } // namespace compat
-} // namespace impm
+  }
+} // namespace impm::compat
 
 #endif

@@ -1,7 +1,7 @@
 #ifndef impm_base_names_h
 #define impm_base_names_h
 
-#include <boost/algorithm/string/join.hpp>
+#include <boost/algorithm/string.hpp>
 
 #include <string>
 #include <vector>
@@ -9,6 +9,17 @@
 namespace impm
 {
   using boost::algorithm::join;
+
+  /** Without blanks around the parts; unlike deal.II's, keeps empty ones. */
+  inline std::vector<std::string>
+  split(const std::string &text, const char delimiter)
+  {
+    std::vector<std::string> parts;
+    boost::split(parts, text, [&](const char c) { return c == delimiter; });
+    for (auto &part : parts)
+      boost::trim(part);
+    return parts;
+  }
 
   /** Of entries that have one. */
   template <typename Entry>

@@ -5,31 +5,56 @@
 #include <impm/grid/background_grid.h>
 
 #include <memory>
+#include <set>
+#include <vector>
 
 namespace impm
 {
-  /** What a point is to the grid: a place, a box, a Gauss point. */
+  /**
+   * Says what a point is to the grid. It touches the cell that it lies in: in
+   * plain MPM and in finite elements, whose cells may be any quadrilaterals.
+   * In GIMP it stands for a box (Bardenhagen & Kober 2004): the average of a Q1
+   * function over a rectangle is its value at the centroid, so a box is a point
+   * for each cell that it overlaps.
+   */
   template <int dim>
   class FootprintBuilder
   {
   public:
-    virtual ~FootprintBuilder() = default;
+    explicit FootprintBuilder(const GridSpec<dim> &spec)
+      : has_boxes(spec.method == GridMethod::gimp)
+      , boxes_stretch(spec.boxes_stretch)
+    {}
 
-    /** Fills the footprints of this step. Collective. */
-    virtual void
+    /** The footprints of this step. */
+    Footprints<dim>
     build(const MaterialPoints<dim> &points,
           const BackgroundGrid<dim> &grid,
-          const Discretization<dim> &discretization,
-          Footprints<dim>           &footprints) = 0;
+          const Discretization<dim> &discretization);
 
-    /** Boxes of the last build that had to be cut, of this rank. */
-    unsigned int n_limited_boxes = 0;
+  private:
+    using CellIterator = typename Discretization<dim>::CellIterator;
+    using TriaIterator =
+      typename dealii::Triangulation<dim>::active_cell_iterator;
+
+    /** Of a cell. */
+    struct Surroundings
+    {
+      std::vector<CellIterator> cells;
+      dealii::Tensor<1, dim>    reach;      ///< their smallest extents (m)
+      dealii::Point<dim>        start, end; ///< its own corners (m)
+    };
+
+    const Surroundings &
+    surroundings_of(const CellIterator        &cell,
+                    const Discretization<dim> &discretization);
+
+    const bool has_boxes, boxes_stretch;
+
+    unsigned int                        epoch = 0; ///< of what follows
+    std::vector<std::set<TriaIterator>> vertex_to_cells;
+    std::vector<Surroundings>           surroundings; ///< by cell, where needed
   };
-
-  /** The builder of a method: every one stands in here. */
-  template <int dim>
-  std::unique_ptr<FootprintBuilder<dim>>
-  make_footprint_builder(const GridSpec<dim> &spec);
 } // namespace impm
 
 #endif

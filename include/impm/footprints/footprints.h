@@ -5,7 +5,6 @@
 #include <impm/points/material_points.h>
 
 #include <array>
-#include <functional>
 #include <vector>
 
 namespace impm
@@ -53,30 +52,16 @@ namespace impm
       dealii::Point<dim> centroid; ///< in unit coordinates of the cell
     };
 
-    /** Writes values and gradients of the shape functions of a piece. */
-    using Shape =
-      std::function<void(const Piece &, double *values, double *gradients)>;
-
     /**
-     * Makes entries of pieces, which come in any order. `inverse_radius` is
-     * the caller's.
+     * Makes entries, for once, of pieces, which come in any order, in cells
+     * that are axis-aligned or may have any corners. `inverse_radius` is the
+     * caller's.
      */
     void
     build(const std::vector<Piece>  &pieces,
           unsigned int               n_points,
           const Discretization<dim> &discretization,
-          const Shape               &shape);
-
-    /** The Shape of an axis-aligned cell, times the weight. */
-    static void
-    box_shape(const Piece &piece, double *values, double *gradients);
-
-    /** The Shape of a cell with any corners, by local number of its nodes. */
-    static void
-    mapped_shape(const Piece               &piece,
-                 const Discretization<dim> &discretization,
-                 double                    *values,
-                 double                    *gradients);
+          bool                       any_corners);
 
     /**
      * Takes nodes out of the reach of points that would move them but give
@@ -108,12 +93,6 @@ namespace impm
      */
     void
     make_patches(const std::vector<unsigned int> &coupled);
-
-    unsigned int
-    n_entries() const
-    {
-      return point.size();
-    }
 
     const double *
     value(const unsigned int entry) const
@@ -152,12 +131,12 @@ namespace impm
     /** Where the nodes of an entry stand among those of its patch. */
     std::vector<unsigned int> place;
 
-  private:
-    unsigned int        n_points = 0;
-    std::vector<double> values, gradients;
+    /** Boxes of this rank that had to be cut. */
+    unsigned int n_limited_boxes = 0;
 
-    std::vector<unsigned int> cell_of_entry, slot_of_cell, order;
-    bool                      one_entry_each = true;
+  private:
+    std::vector<double>       values, gradients;
+    std::vector<unsigned int> cell_of_entry;
   };
 } // namespace impm
 

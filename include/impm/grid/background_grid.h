@@ -1,8 +1,6 @@
 #ifndef impm_grid_background_grid_h
 #define impm_grid_background_grid_h
 
-#include <deal.II/base/mpi.h>
-
 #include <deal.II/distributed/tria.h>
 
 #include <deal.II/fe/mapping.h>
@@ -14,6 +12,15 @@
 
 namespace impm
 {
+  /** What a step has made of the nodes, ghosts and hanging nodes included. */
+  struct StepResult
+  {
+    Vector increment; ///< (m)
+    /** At the end of the step, with inertia (m/s, m/s^2). What is prescribed
+     * has the mean velocity of its step. */
+    Vector velocity, acceleration;
+  };
+
   /**
    * The background grid: a p4est forest of axis-aligned boxes. Between two
    * steps it may be stretched, refined, coarsened, sent to other ranks; a step
@@ -27,9 +34,17 @@ namespace impm
   public:
     BackgroundGrid(const GridSpec<dim> &spec, MPI_Comm communicator);
 
-    /** The grid as it is now. Collective. */
+    /** The grid as it is now. */
     std::shared_ptr<const Discretization<dim>>
-    discretization() const;
+    discretization() const
+    {
+      return current;
+    }
+
+    /** Refines and coarsens the cells that are flagged, and sends them to other
+     * ranks. Collective. */
+    void
+    adapt();
 
     /**
      * Stretches the grid along the normal of a face (deal.II's number) so
@@ -52,23 +67,15 @@ namespace impm
       Vector velocity, acceleration; ///< with inertia, after the first step
     };
 
-    /** Of a Lagrangian grid: takes what a step has made of its nodes. */
+    /** Of a Lagrangian grid: takes what a step has made of its nodes.
+     * Collective. */
     void
-    carry(const Vector &increment,
-          const Vector &end_velocity,
-          const Vector &end_acceleration);
+    carry(const StepResult &result);
 
     const NodalState &
     nodal_state() const
     {
       return state;
-    }
-
-    /** Whether the nodes have a motion of their own. */
-    bool
-    nodes_have_motion() const
-    {
-      return state.velocity.size() > 0;
     }
 
     const MPI_Comm                                    communicator;
@@ -79,16 +86,9 @@ namespace impm
     const std::unique_ptr<const dealii::Mapping<dim>> mapping;
 
   private:
-    dealii::Point<dim> lower_corner, upper_corner;
-    NodalState         state;
-
-    // Made when somebody asks, gone when the cells or their corners change.
-    mutable std::shared_ptr<const NodeNumbering<dim>>  numbering;
-    mutable std::shared_ptr<const Discretization<dim>> current;
-    mutable unsigned int                               epoch = 0;
-
-    /** What forgets them: cut before they go. */
-    std::vector<boost::signals2::scoped_connection> connections;
+    dealii::Point<dim>                         lower_corner, upper_corner;
+    NodalState                                 state;
+    std::shared_ptr<const Discretization<dim>> current;
   };
 } // namespace impm
 

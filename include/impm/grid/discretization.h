@@ -1,23 +1,17 @@
 #ifndef impm_grid_discretization_h
 #define impm_grid_discretization_h
 
-#include <deal.II/base/index_set.h>
-#include <deal.II/base/mpi.h>
 #include <deal.II/base/partitioner.h>
-#include <deal.II/base/point.h>
 
 #include <deal.II/distributed/tria_base.h>
 
 #include <deal.II/dofs/dof_handler.h>
-
-#include <deal.II/fe/fe_system.h>
 
 #include <deal.II/lac/affine_constraints.h>
 
 #include <impm/base/vector.h>
 
 #include <array>
-#include <cmath>
 #include <memory>
 #include <vector>
 
@@ -28,26 +22,24 @@ namespace impm
   double
   cell_extent(const Cell &cell, const unsigned int direction)
   {
-    const auto edge = cell->vertex(1u << direction) - cell->vertex(0);
-    return std::sqrt(edge * edge);
+    return cell->vertex(0).distance(cell->vertex(1u << direction));
   }
 
   /** Numbers of the nodes of a grid, as long as its cells stay the same. */
   template <int dim>
-  class NodeNumbering
+  struct NodeNumbering
   {
-  public:
     /** Collective. */
-    explicit NodeNumbering(
-      const dealii::parallel::TriangulationBase<dim> &triangulation);
+    NodeNumbering(const dealii::parallel::TriangulationBase<dim> &triangulation,
+                  unsigned int                                    epoch);
 
-    NodeNumbering(const NodeNumbering &) = delete;
+    /** Counts the grids: grows when cells are refined, coarsened or sent to
+     * another rank. Whoever keeps something by cell compares it. */
+    const unsigned int epoch;
 
     const dealii::parallel::TriangulationBase<dim> &triangulation;
-
-    const dealii::FESystem<dim> fe;
-    dealii::DoFHandler<dim>     dof_handler;
-    dealii::IndexSet            locally_relevant_dofs;
+    dealii::DoFHandler<dim>                         dof_handler;
+    dealii::IndexSet                                locally_relevant_dofs;
 
     /** Hanging nodes alone. */
     dealii::AffineConstraints<double> hanging_nodes;
@@ -60,11 +52,7 @@ namespace impm
       std::vector<std::pair<unsigned int, double>> masters;
     };
     std::vector<HangingValue> hanging;     ///< those that this rank owns
-    bool                      any_hanging; ///< on any rank
-
-  private:
-    void
-    find_hanging_nodes();
+    const bool                any_hanging; ///< on any rank
   };
 
   /**
@@ -78,13 +66,10 @@ namespace impm
   public:
     using CellIterator = typename dealii::DoFHandler<dim>::active_cell_iterator;
 
-    static constexpr unsigned int n_cell_nodes = 1u << dim;
-
-    /** Nodes stand at the vertices, moved by `shift` if there is one (m).
+    /** Nodes stand at the vertices, moved by `shift` unless it is empty (m).
      * Collective. */
     Discretization(std::shared_ptr<const NodeNumbering<dim>> numbering,
-                   unsigned int                              epoch,
-                   const Vector                             *shift = nullptr);
+                   const Vector                             &shift);
 
     /** A vector of this grid, zero, with room for all locally relevant values.
      */
@@ -98,19 +83,15 @@ namespace impm
      * Where the nodes of a cell stand in a Vector of this grid: component c
      * of node n is its local element dim n + c.
      */
-    std::array<unsigned int, n_cell_nodes>
+    std::array<unsigned int, 1u << dim>
     nodes_of(const CellIterator &cell) const
     {
-      std::array<unsigned int, n_cell_nodes> nodes;
+      std::array<unsigned int, 1u << dim> nodes;
       for (const unsigned int v : cell->vertex_indices())
-        nodes[v] = local_index(cell->vertex_dof_index(v, 0)) / dim;
+        nodes[v] = numbering->partitioner->global_to_local(
+                     cell->vertex_dof_index(v, 0)) /
+                   dim;
       return nodes;
-    }
-
-    unsigned int
-    local_index(const dealii::types::global_dof_index dof) const
-    {
-      return numbering->partitioner->global_to_local(dof);
     }
 
     /** Unknowns (deal.II's numbers) of nodes in a range of local numbers. */
@@ -122,16 +103,7 @@ namespace impm
     with_dofs(
       const typename dealii::Triangulation<dim>::cell_iterator &cell) const
     {
-      return CellIterator(&numbering->triangulation,
-                          cell->level(),
-                          cell->index(),
-                          &numbering->dof_handler);
-    }
-
-    const dealii::parallel::TriangulationBase<dim> &
-    triangulation() const
-    {
-      return numbering->triangulation;
+      return CellIterator(*cell, &numbering->dof_handler);
     }
 
     const dealii::DoFHandler<dim> &
@@ -146,12 +118,6 @@ namespace impm
       return numbering->dof_handler.locally_owned_dofs();
     }
 
-    const dealii::AffineConstraints<double> &
-    hanging_nodes() const
-    {
-      return numbering->hanging_nodes;
-    }
-
     /** Hanging nodes from their masters. Ghosts come up to date. Collective. */
     void
     interpolate_hanging(Vector &vector) const;
@@ -160,11 +126,9 @@ namespace impm
     void
     condense_hanging(Vector &vector) const;
 
+    /** Another one when cells are refined, coarsened or change the rank. */
     const std::shared_ptr<const NodeNumbering<dim>> numbering;
     const MPI_Comm                                  communicator;
-
-    /** Grows when cells are refined, coarsened or sent to another rank. */
-    const unsigned int epoch;
 
     /** Of the locally relevant nodes, by local number (m). */
     std::vector<dealii::Point<dim>> node_positions;

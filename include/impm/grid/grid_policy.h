@@ -2,23 +2,23 @@
 #define impm_grid_grid_policy_h
 
 #include <impm/grid/rigid_bodies.h>
-#include <impm/grid/step_result.h>
 #include <impm/input/sections/boundary_conditions.h>
-#include <impm/points/material_points.h>
-
-#include <array>
-#include <memory>
 
 namespace impm
 {
   /**
-   * How the grid goes from one step to the next: it stays, follows a face, goes
-   * with the material, or adapts. Nothing else changes the grid.
+   * How the grid goes from one step to the next: with a face that moves it and,
+   * if it is Lagrangian, with the material. Another policy may adapt it, too.
+   * Nothing else changes the grid.
    */
   template <int dim>
   class GridPolicy
   {
   public:
+    explicit GridPolicy(const Faces<dim> &faces)
+      : faces(faces)
+    {}
+
     virtual ~GridPolicy() = default;
 
     /**
@@ -35,28 +35,22 @@ namespace impm
     }
 
     /** After a step whose points have moved. Collective. */
-    virtual void
-    advance(BackgroundGrid<dim> & /*grid*/,
-            const StepResult & /*result*/,
-            double /*from*/,
-            double /*to*/) const
-    {}
+    void
+    advance(BackgroundGrid<dim> &grid,
+            const StepResult    &result,
+            double               from,
+            double               to) const;
 
     /** Where a face will lie along its normal at the end of a step (m). */
-    virtual double
+    double
     face_position(const BackgroundGrid<dim> &grid,
-                  const unsigned int         face,
-                  double /*from*/,
-                  double /*to*/) const
-    {
-      return grid.face_position(face);
-    }
-  };
+                  unsigned int               face,
+                  double                     from,
+                  double                     to) const;
 
-  /** The policy that a scene names: every one stands in here. */
-  template <int dim>
-  std::unique_ptr<GridPolicy<dim>>
-  make_grid_policy(const GridSpec<dim> &spec, const Faces<dim> &faces);
+  private:
+    const Faces<dim> &faces;
+  };
 
   /**
    * Refines and coarsens the cells that are flagged and takes points and rigid

@@ -1,6 +1,8 @@
 #ifndef impm_grid_populated_cells_h
 #define impm_grid_populated_cells_h
 
+#include <deal.II/grid/grid_tools.h>
+
 #include <impm/footprints/footprints.h>
 
 #include <vector>
@@ -31,6 +33,20 @@ namespace impm
      */
     std::vector<double> stiffness;
   };
+
+  /** Fills the ghost cells of data by active cell index. Collective. */
+  template <int dim>
+  void
+  exchange_cell_data(const Discretization<dim> &discretization,
+                     std::vector<double>       &cell_data)
+  {
+    dealii::GridTools::exchange_cell_data_to_ghosts<double>(
+      discretization.dof_handler(),
+      [&](const auto &cell) { return cell_data[cell->active_cell_index()]; },
+      [&](const auto &cell, const double value) {
+        cell_data[cell->active_cell_index()] = value;
+      });
+  }
 } // namespace impm
 
 #endif

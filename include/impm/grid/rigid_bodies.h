@@ -1,11 +1,11 @@
 #ifndef impm_grid_rigid_bodies_h
 #define impm_grid_rigid_bodies_h
 
-#include <impm/grid/node_contact.h>
+#include <deal.II/base/bounding_box.h>
+
 #include <impm/points/material_points.h>
 
 #include <memory>
-#include <optional>
 #include <vector>
 
 namespace impm
@@ -13,8 +13,12 @@ namespace impm
   /**
    * Bodies that move as prescribed. They are made of points, which impose their
    * motion on every node of the cells that they touch (Sulsky & Kaul 2004, sec.
-   * 3.2.7) and have no fields. To a Lagrangian grid they are boxes to which its
-   * nodes stick.
+   * 3.2.7) and have no fields.
+   *
+   * To a Lagrangian grid they are boxes without points: a node that reaches one
+   * moves with it from then on. No step may carry a node into a box, so steps
+   * are cut where the first of them touches it. What fills the cells between
+   * the nodes is not looked at, nor are hanging nodes, which follow others.
    */
   template <int dim>
   class RigidBodies
@@ -24,21 +28,16 @@ namespace impm
                 GeometryKind               geometry,
                 const BackgroundGrid<dim> &grid);
 
-    unsigned int
-    size() const
+    struct Body
     {
-      return bodies.size();
-    }
+      /** Displacement from one time to another (m). */
+      dealii::Tensor<1, dim>
+      displacement(double from, double to) const;
 
-    const BodySpec<dim> &
-    spec(const unsigned int body) const
-    {
-      return *bodies[body].spec;
-    }
-
-    /** Displacement from one time to another (m). */
-    dealii::Tensor<1, dim>
-    displacement(unsigned int body, double from, double to) const;
+      const BodySpec<dim>                  *spec;
+      std::unique_ptr<SortedParticles<dim>> points;
+      dealii::BoundingBox<dim> box; ///< at the start, to a Lagrangian grid
+    };
 
     /**
      * Moves the points and sorts them; nodes that have come to a box stick to
@@ -49,7 +48,9 @@ namespace impm
 
     /**
      * The part of a step between two times after which the increment `u` brings
-     * the first free node to a box; 1 if there is none. Collective.
+     * the first free node to a box, taking its way as straight; 1 if there is
+     * none. `u` (m) has its ghosts; a node is free where any component is not
+     * `constrained`. Collective.
      */
     double
     first_touch(const Vector            &u,
@@ -57,42 +58,18 @@ namespace impm
                 double                   from,
                 double                   to) const;
 
+    std::vector<Body> bodies;
+
     /** By local node, one more than the body that it sticks to; 0: none. */
-    const std::vector<unsigned int> &
-    holders_of_nodes() const
-    {
-      return contact->boxes_of_nodes();
-    }
-
-    /** Sorts the points after the grid has moved. Collective. */
-    void
-    sort();
-
-    /** Around a change of the grid's cells, then sort(). Collective. */
-    void
-    prepare_for_adaptation();
-
-    void
-    unpack_after_adaptation();
-
-    const SortedParticles<dim> &
-    points(const unsigned int body) const
-    {
-      return *bodies[body].points;
-    }
+    std::vector<unsigned int> holders_of_nodes;
 
   private:
-    /** Displacements of all bodies since the start (m). */
-    typename NodeContact<dim>::Shifts
-    displacements(double time) const;
+    /** Nodes that lie on a box at a time, or in it, stick to it from now on. */
+    void
+    stick(double time);
 
-    struct Body
-    {
-      const BodySpec<dim>                  *spec;
-      std::unique_ptr<SortedParticles<dim>> points;
-    };
-    std::vector<Body>               bodies;
-    std::optional<NodeContact<dim>> contact; ///< of a Lagrangian grid
+    const BackgroundGrid<dim> &grid;
+    const double               tolerance; ///< distance that counts as none (m)
   };
 } // namespace impm
 

@@ -1,7 +1,6 @@
 #ifndef impm_grid_step_constraints_h
 #define impm_grid_step_constraints_h
 
-#include <impm/grid/background_grid.h>
 #include <impm/grid/rigid_bodies.h>
 #include <impm/input/sections/boundary_conditions.h>
 
@@ -65,7 +64,7 @@ namespace impm
      * a direction. Collective.
      */
     double
-    sum_over(const std::string         &carrier,
+    sum_over(const std::string         &name,
              const Vector              &vector,
              const std::vector<double> &direction) const;
 
@@ -73,62 +72,39 @@ namespace impm
     std::array<bool, 2 * dim>
     faces_that_hold() const;
 
-    /** Whether a face or rigid body holds a local element. */
-    bool
-    is_prescribed(const unsigned int index) const
-    {
-      return carriers.local_element(index) > 0;
-    }
-
-    static constexpr unsigned int no_carrier = -1;
-
-    /** The face that holds a local element, or the rigid body behind the
-     * faces, or no_carrier. */
-    unsigned int
-    carrier(const unsigned int index) const
-    {
-      return is_prescribed(index) ?
-               static_cast<unsigned int>(carriers.local_element(index)) - 1 :
-               no_carrier;
-    }
-
+    /** Faces, then rigid bodies. */
     unsigned int
     n_carriers() const
     {
-      return 2 * dim + rigid.size();
+      return 2 * dim + rigid.bodies.size();
     }
+
+    static constexpr unsigned int no_carrier = -1;
 
     dealii::AffineConstraints<double> constraints;
 
     /** Whether a local element is constrained. */
     std::vector<char> is_constrained;
 
+    /** What holds a local element, or no_carrier. */
+    std::vector<unsigned int> carrier;
+
   private:
+    // Where they hold a value, it is at least the number of the carrier plus 1.
     void
-    hold_faces();
+    hold_faces(Vector &carriers) const;
 
     void
-    hold_rigid_bodies();
+    hold_rigid_bodies(Vector &carriers) const;
 
-    void
-    hold(dealii::types::global_dof_index dof, unsigned int carrier);
-
+    /** The motion that its carrier gives a local element in a step (m). */
     double
-    prescribed(unsigned int carrier,
-               unsigned int node,
-               unsigned int component,
-               double       time,
-               double       dt) const;
+    prescribed(unsigned int index, double time, double dt) const;
 
     const Faces<dim>          &faces;
     const BackgroundGrid<dim> &grid;
     const Discretization<dim> &discretization;
     const RigidBodies<dim>    &rigid;
-
-    /** One more than the number of the face, or of the rigid body behind the
-     * faces, that holds a value; 0 if none does. */
-    Vector            carriers;
-    std::vector<char> rests; ///< whether held without motion
   };
 } // namespace impm
 

@@ -44,14 +44,15 @@ namespace impm
                         documentation);
     }
 
+    /** What is chosen in a section ("Output/probe"), or else the default. */
     Value
-    read(const dealii::ParameterHandler &prm) const
+    read(const ParameterFile::Chosen &chosen, const std::string &section) const
     {
-      const std::string name = prm.get(entry);
+      const std::string name = chosen(section + "/" + entry, "");
       for (const auto &option : options)
         if (option.name == name)
           return option.value;
-      throw std::logic_error(entry + ": no choice is called '" + name + "'");
+      return options.front().value;
     }
 
     const std::string &
@@ -63,7 +64,7 @@ namespace impm
       throw std::logic_error(entry + ": a choice has no name");
     }
 
-    /** Whether the value is chosen in a section ("Output/probe"). */
+    /** Whether the value is chosen in a section. */
     bool
     is(const ParameterFile::Chosen &chosen,
        const std::string           &section,

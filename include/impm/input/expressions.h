@@ -3,9 +3,16 @@
 
 #include <deal.II/base/function_parser.h>
 #include <deal.II/base/parameter_handler.h>
+#include <deal.II/base/utilities.h>
 
+#include <deal.II/lac/vector.h>
+
+#include <impm/base/exceptions.h>
+
+#include <iostream>
 #include <map>
 #include <memory>
+#include <sstream>
 #include <string>
 
 namespace impm
@@ -20,9 +27,64 @@ namespace impm
   std::shared_ptr<dealii::FunctionParser<n_variables>>
   read_expressions(const dealii::ParameterHandler      &prm,
                    const std::string                   &entry,
-                   unsigned int                         n_components,
-                   bool                                 with_time,
-                   const std::map<std::string, double> &constants);
+                   const unsigned int                   n_components,
+                   const bool                           with_time,
+                   const std::map<std::string, double> &constants)
+  {
+    using Parser           = dealii::FunctionParser<n_variables>;
+    const std::string text = prm.get(entry);
+    if (text.empty())
+      return nullptr;
+    const auto expressions = dealii::Utilities::split_string_list(text, ';');
+    if (expressions.size() != n_components)
+      throw InputError(entry,
+                       "found '" + text + "', allowed " +
+                         (n_components == 1 ?
+                            "is one expression" :
+                            "are " + std::to_string(n_components) +
+                              " expressions between semicolons"));
+
+    const std::string variables =
+      n_variables == 1 ?
+        "t" :
+        Parser::default_variable_names() + (with_time ? ",t" : "");
+    const auto function = std::make_shared<Parser>(n_components);
+
+    // deal.II also prints muParser's message before it throws: report it once.
+    std::ostringstream printed, flaw;
+    const auto         screen = std::cerr.rdbuf(printed.rdbuf());
+    try
+      {
+        function->initialize(variables,
+                             expressions,
+                             constants,
+                             with_time && n_variables > 1);
+        // muParser compiles at the first use, which may be on another day.
+        dealii::Vector<double> value(n_components);
+        function->vector_value(dealii::Point<n_variables>(), value);
+      }
+    catch (const dealii::ExceptionBase &exception)
+      {
+        exception.print_info(flaw);
+      }
+    catch (...)
+      {
+        // muParser's own exceptions know no base class, and this is the one
+        // place where deal.II lets them through.
+        flaw << "a constant has a name that cannot stand in expressions";
+      }
+    std::cerr.rdbuf(screen);
+
+    // Around muParser's message, deal.II calls the error's number a column.
+    const auto said =
+      dealii::Utilities::split_string_list(flaw.str(), "said: ");
+    if (!said.empty())
+      throw InputError(entry,
+                       "found '" + text + "', allowed are expressions in " +
+                         variables + " and the constants: " +
+                         dealii::Utilities::trim(said.back()));
+    return function;
+  }
 } // namespace impm
 
 #endif

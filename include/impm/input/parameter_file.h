@@ -3,6 +3,8 @@
 
 #include <deal.II/base/parameter_handler.h>
 
+#include <impm/base/exceptions.h>
+
 #include <functional>
 #include <memory>
 #include <string>
@@ -29,18 +31,16 @@ namespace impm
     using Chosen = std::function<std::string(const std::string &path,
                                              const std::string &fallback)>;
 
-    using Declare =
-      std::function<void(dealii::ParameterHandler &prm, const Chosen &chosen)>;
-
     /**
      * Reads the scene that the entry Study/Scene of `file_name` names (a path
      * from there), if it does, then `file_name`, then the overrides
      * ("Section/Sub/Name=value"). Throws InputError, whose message has file,
      * line, entry, what was found and what is allowed.
      */
-    ParameterFile(const std::string              &file_name,
-                  const std::vector<std::string> &overrides,
-                  const Declare                  &declare);
+    ParameterFile(const std::string                               &file_name,
+                  const std::vector<std::string>                  &overrides,
+                  const std::function<void(dealii::ParameterHandler &prm,
+                                           const Chosen &chosen)> &declare);
 
     dealii::ParameterHandler &
     handler()
@@ -50,13 +50,15 @@ namespace impm
 
     /** All entries as text that reads back, without some of the sections. */
     std::string
-    resolved(const std::vector<std::string> &without = {}) const;
+    resolved(const std::vector<std::string> &without) const;
 
     /** Where an entry was last set: an override, or file and line. */
     std::string
     locate(const std::string &path) const;
 
-    const std::string file_name;
+    /** The message of an error with its entry, and where that was set. */
+    std::string
+    describe(const InputError &error) const;
 
     /**
      * Entries that are set but do nothing under the choices of this scene;
@@ -65,22 +67,20 @@ namespace impm
     std::vector<std::string> warnings;
 
   private:
-    struct Source
-    {
-      std::string name, text;
-    };
-
     void
     read_scene_of_study();
-
-    void
-    read(dealii::ParameterHandler &prm, bool strict) const;
 
     /** Takes out of the sources what only `others` declares, with warnings. */
     void
     drop_idle_entries(const dealii::ParameterHandler &others);
 
-    std::vector<std::string>                  overrides;
+    struct Source
+    {
+      std::string name; ///< of a file, or "--set ..."
+      std::string text;
+    };
+
+    const std::string                         file_name;
     std::vector<Source>                       sources; ///< the last one wins
     std::unique_ptr<dealii::ParameterHandler> prm;
   };
@@ -94,8 +94,8 @@ namespace impm
   split_names(const std::string &list);
 
   /**
-   * Runs `action` inside a subsection ("A/B") and comes back to where it was;
-   * an InputError from inside gets the path in front of its entry.
+   * Runs `action` inside a subsection ("A/B") and comes back to where it was.
+   * An InputError from inside gets the path in front of its entry.
    */
   void
   in_section(dealii::ParameterHandler    &prm,

@@ -3,38 +3,45 @@
 
 #include <deal.II/base/parameter_handler.h>
 
-#include <functional>
 #include <string>
 #include <vector>
 
 namespace impm
 {
-  /**
-   * Calls `action` with the path of every `subsection` and `set` in the text
-   * of a parameter file, and with its line.
-   */
-  void
-  for_each_entry(const std::string                             &text,
-                 const std::function<void(const std::vector<std::string> &path,
-                                          unsigned int                    line,
-                                          bool is_subsection)> &action);
+  /** A `subsection` or `set` in the text of a parameter file. */
+  struct ParameterLine
+  {
+    std::vector<std::string> path;
+    unsigned int             number;
+    bool                     is_subsection;
+  };
 
-  /**
-   * A pattern as a person says it: "[Double 2.22507e-308...MAX_DOUBLE
-   * (inclusive)]" is a number greater than 0.
-   */
+  std::vector<ParameterLine>
+  lines_of(const std::string &text);
+
+  /** All that is declared, as the text of a parameter file. */
   std::string
-  describe_pattern(const std::string &pattern);
+  text_of(const dealii::ParameterHandler &prm);
+
+  /** A line of a file, or an override ("--set ..."), which has but one. */
+  std::string
+  place_of(const std::string &file, unsigned int line);
 
   /**
-   * What ParameterHandler says of a file that it cannot read, in the words of
+   * What ParameterHandler says of a text that it cannot read, in the words of
    * this program: file, line, entry, what was found, what is allowed.
-   * `text` is what was read, `prm` has what is declared.
    */
   std::string
   describe_error(const dealii::ExceptionBase    &exception,
                  const std::string              &text,
                  const dealii::ParameterHandler &prm);
+
+  /**
+   * Every entry that some scene can have, with default, range, unit and
+   * meaning. Lists of names show one item of each kind.
+   */
+  std::string
+  parameter_listing();
 } // namespace impm
 
 #endif

@@ -2,8 +2,13 @@
 #define impm_materials_elastic_constants_h
 
 #include <deal.II/base/parameter_handler.h>
+#include <deal.II/base/patterns.h>
+#include <deal.II/base/symmetric_tensor.h>
 
 #include <impm/input/parameter_file.h>
+
+#include <string>
+#include <utility>
 
 namespace impm
 {
@@ -11,32 +16,43 @@ namespace impm
   struct ElasticConstants
   {
     /** Young's modulus (Pa, > 0) and Poisson's ratio (-1 < nu < 0.5). */
-    ElasticConstants(double young, double poisson);
+    static ElasticConstants
+    from_young(const double young, const double poisson)
+    {
+      return {young,
+              young / (3. * (1. - 2. * poisson)),
+              young / (2. * (1. + poisson))};
+    }
 
     /** From the shear and the bulk modulus (Pa, > 0). */
     static ElasticConstants
-    from_moduli(double shear, double bulk);
+    from_moduli(const double shear, const double bulk)
+    {
+      return {9. * bulk * shear / (3. * bulk + shear), bulk, shear};
+    }
 
-    /** The entries of Young's modulus and Poisson's ratio. */
     static void
-    declare_parameters(dealii::ParameterHandler &prm);
+    declare_parameters(dealii::ParameterHandler &prm,
+                       const ParameterFile::Chosen &)
+    {
+      prm.declare_entry("Young's modulus",
+                        "1e9",
+                        dealii::Patterns::Double(1e-300),
+                        "Young's modulus of small strains (Pa), positive.");
+      // The ends are excluded by a margin that error messages can show.
+      prm.declare_entry("Poisson's ratio",
+                        "0.3",
+                        dealii::Patterns::Double(-0.9999, 0.499999),
+                        "Poisson's ratio of small strains, between -1 and 0.5, "
+                        "both excluded.");
+    }
 
-    /** The choice of a pair of constants. */
-    static void
-    declare_choice(dealii::ParameterHandler &prm);
-
-    /** The entries of the pair that is chosen. */
-    static void
-    declare_chosen(dealii::ParameterHandler    &prm,
-                   const ParameterFile::Chosen &chosen);
-
-    /** Reads the pair that was declared. */
     static ElasticConstants
-    from_parameters(dealii::ParameterHandler &prm);
-
-    /** As from_parameters, after declare_choice and declare_chosen. */
-    static ElasticConstants
-    from_choice(dealii::ParameterHandler &prm);
+    from_parameters(dealii::ParameterHandler &prm)
+    {
+      return from_young(prm.get_double("Young's modulus"),
+                        prm.get_double("Poisson's ratio"));
+    }
 
     /** Lame's first constant (Pa). */
     double
@@ -52,12 +68,59 @@ namespace impm
       return bulk + 4. / 3. * shear;
     }
 
-    const double young; ///< Pa
-    const double bulk;  ///< K (Pa)
-    const double shear; ///< G (Pa)
+    double young; ///< Pa
+    double bulk;  ///< K (Pa)
+    double shear; ///< G (Pa)
+  };
+
+  /** volumetric 1 x 1 + shear times the symmetric identity. */
+  inline dealii::SymmetricTensor<4, 3>
+  isotropic_tensor(const double volumetric, const double shear)
+  {
+    const auto unit = dealii::unit_symmetric_tensor<3>();
+    return volumetric * dealii::outer_product(unit, unit) +
+           shear * dealii::identity_tensor<3>();
+  }
+
+  /** Elastic constants of which a scene chooses the pair that it gives. */
+  struct ElasticPair
+  {
+    static void
+    declare_parameters(dealii::ParameterHandler    &prm,
+                       const ParameterFile::Chosen &chosen)
+    {
+      const std::string moduli = "shear and bulk modulus";
+      prm.declare_entry("Constants from",
+                        engineering,
+                        dealii::Patterns::Selection(engineering +
+                                                    ("|" + moduli)),
+                        "Which pair of elastic constants is given.");
+      // it may be "any"
+      const std::string pair = chosen("Constants from", engineering);
+      if (pair != moduli)
+        ElasticConstants::declare_parameters(prm, chosen);
+      if (pair != engineering)
+        for (const auto &[name, value] :
+             {std::make_pair("Shear modulus", "4e8"),
+              std::make_pair("Bulk modulus", "1e9")})
+          prm.declare_entry(name,
+                            value,
+                            dealii::Patterns::Double(1e-300),
+                            "Of small strains (Pa), positive.");
+    }
+
+    static ElasticConstants
+    from_parameters(dealii::ParameterHandler &prm)
+    {
+      if (prm.get("Constants from") == engineering)
+        return ElasticConstants::from_parameters(prm);
+      return ElasticConstants::from_moduli(prm.get_double("Shear modulus"),
+                                           prm.get_double("Bulk modulus"));
+    }
 
   private:
-    ElasticConstants(double young, double bulk, double shear);
+    static constexpr const char *engineering =
+      "Young's modulus and Poisson's ratio";
   };
 } // namespace impm
 

@@ -1,8 +1,10 @@
 #ifndef impm_materials_jaumann_law_h
 #define impm_materials_jaumann_law_h
 
-#include <impm/materials/pointwise_law.h>
+#include <impm/materials/midpoint_rate.h>
 #include <impm/materials/rate_law.h>
+
+#include <cmath>
 
 namespace impm
 {
@@ -24,20 +26,47 @@ namespace impm
     using PointwiseLaw::PointwiseLaw;
 
     bool
-    evaluate_point(const Step &step,
-                   bool        with_tangent,
-                   Response   &response) const;
+    evaluate_one(const Step &step,
+                 const bool  with_tangent,
+                 Response   &response) const override
+    {
+      const double J = dealii::determinant(step.total);
+      MidpointRate rate;
+      if (!(J > 0) || !rate.measure(step.increment))
+        return false;
+
+      // half of the strain before the rotation, half behind it
+      const auto                 half = 0.5 * elastic_stress(rate.strain);
+      const dealii::Tensor<2, 3> before =
+        stress_field.load(step.history) + half;
+      const auto to_end = before * dealii::transpose(rate.rotation);
+      const auto end =
+        return_stress(dealii::symmetrize(rate.rotation * to_end) + half, step);
+      response.kirchhoff_stress = J * end.stress;
+      response.potential        = 0;
+      const auto change         = [&](const auto &strain_change,
+                              const auto &rotation_change,
+                              const bool  stretches) {
+        const auto half_change = 0.5 * elastic_stress(strain_change);
+        const dealii::Tensor<2, 3> turned =
+          rotation_change * to_end + 0.5 * rate.rotation *
+                                       dealii::Tensor<2, 3>(half_change) *
+                                       dealii::transpose(rate.rotation);
+        dealii::SymmetricTensor<2, 3> result =
+          J * end.change(2. * dealii::symmetrize(turned) + half_change);
+        if (stretches)
+          result += response.kirchhoff_stress;
+        return result;
+      };
+      if (with_tangent)
+        response.full_tangent = rate.tangent(step.increment, change);
+      return std::isfinite(response.kirchhoff_stress.norm());
+    }
 
     Form
     form() const override
     {
       return Form::full;
-    }
-
-    bool
-    has_potential() const override
-    {
-      return false;
     }
   };
 } // namespace impm

@@ -1,8 +1,9 @@
 #ifndef impm_materials_linear_law_h
 #define impm_materials_linear_law_h
 
-#include <impm/materials/pointwise_law.h>
 #include <impm/materials/rate_law.h>
+
+#include <cmath>
 
 namespace impm
 {
@@ -26,9 +27,36 @@ namespace impm
     using PointwiseLaw::PointwiseLaw;
 
     bool
-    evaluate_point(const Step &step,
-                   bool        with_tangent,
-                   Response   &response) const;
+    evaluate_one(const Step &step,
+                 const bool  with_tangent,
+                 Response   &response) const override
+    {
+      const double J      = dealii::determinant(step.total);
+      const double change = dealii::determinant(step.increment);
+      if (!(J > 0) || !(change > 0))
+        return false;
+      const double volume = J / change; // at t_n
+
+      const dealii::SymmetricTensor<2, 3> strain =
+        dealii::symmetrize(step.increment) - dealii::unit_symmetric_tensor<3>();
+      const auto end =
+        return_stress(stress_field.load(step.history) + elastic_stress(strain),
+                      step);
+
+      response.kirchhoff_stress = volume * end.stress;
+      response.potential        = volume * (elastic_energy(end.stress) +
+                                     plastic_work(end.plastic_strain));
+      if (with_tangent)
+        {
+          const double shear = 2 * constants.shear * end.scale;
+          response.tangent =
+            isotropic_tensor(volume * (constants.bulk - shear / 3),
+                             volume * shear) +
+            (volume * 2 * constants.shear * end.steepness) *
+              dealii::outer_product(end.deviator, end.deviator);
+        }
+      return std::isfinite(response.potential);
+    }
 
     Form
     form() const override

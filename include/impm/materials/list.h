@@ -17,10 +17,14 @@ namespace impm
   struct MaterialEntry
   {
     std::string name; ///< as in `set Law = ...`
-    std::string documentation;
 
-    /** Declares the entries of this law, and no others. */
-    std::function<void(dealii::ParameterHandler &)> declare;
+    /**
+     * Declares the entries of this law, and no others. What some of them say,
+     * by their bare names in `chosen`, decides on others.
+     */
+    std::function<void(dealii::ParameterHandler &,
+                       const ParameterFile::Chosen &)>
+      declare;
 
     /**
      * Reads them back and makes the law, which adds its fields to the
@@ -30,14 +34,6 @@ namespace impm
     std::function<std::unique_ptr<const Material>(
       dealii::ParameterHandler &, const MaterialSpec &, PointLayout &history)>
       create;
-
-    /**
-     * Declares the entries that depend on others of this law; `chosen` takes
-     * their bare names. Empty if there are none.
-     */
-    std::function<void(dealii::ParameterHandler &,
-                       const ParameterFile::Chosen &)>
-      declare_chosen = {};
   };
 
   /** Every law of the program; a new one is added here. */

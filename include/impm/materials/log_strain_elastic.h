@@ -1,14 +1,15 @@
 #ifndef impm_materials_log_strain_elastic_h
 #define impm_materials_log_strain_elastic_h
 
-#include <deal.II/base/parameter_handler.h>
+#include <deal.II/physics/elasticity/kinematics.h>
 
 #include <impm/materials/elastic_constants.h>
 #include <impm/materials/log_strain.h>
-#include <impm/materials/pointwise_law.h>
+#include <impm/materials/material.h>
 
 #include <array>
-#include <memory>
+#include <cmath>
+#include <limits>
 
 namespace impm
 {
@@ -18,83 +19,90 @@ namespace impm
    *   psi = K / 2 (tr eps)^2 + G |dev eps|^2   per initial volume,
    *   tau = K tr eps 1 + 2 G dev eps.
    */
-  class HenckyElasticity : public ElasticConstants
+  struct HenckyElasticity : public ElasticConstants
   {
-  public:
-    using ElasticConstants::ElasticConstants;
-
-    static HenckyElasticity
-    from_parameters(dealii::ParameterHandler &prm);
-
     /** psi (J/m^3) of principal strains. */
     double
-    energy(const std::array<double, 3> &strain) const;
+    energy(const std::array<double, 3> &strain) const
+    {
+      const double volumetric = strain[0] + strain[1] + strain[2];
+      double       squares    = 0.;
+      for (const double e : strain)
+        squares += (e - volumetric / 3.) * (e - volumetric / 3.);
+      return 0.5 * bulk * volumetric * volumetric + shear * squares;
+    }
+
+    /** The same of a left Cauchy-Green tensor; NaN if it is none. */
+    double
+    energy(const dealii::SymmetricTensor<2, 3> &left_cauchy_green) const
+    {
+      LogStrain::PrincipalStrains principal;
+      return LogStrain::decompose(left_cauchy_green, principal) ?
+               energy(principal.strain) :
+               std::numeric_limits<double>::quiet_NaN();
+    }
 
     /** tau_a and what goes with them, of principal strains. */
     LogStrain::PrincipalStress
-    stress(const std::array<double, 3> &strain) const;
-
-  private:
-    explicit HenckyElasticity(const ElasticConstants &constants)
-      : ElasticConstants(constants)
-    {}
+    stress(const std::array<double, 3> &strain) const
+    {
+      LogStrain::PrincipalStress result;
+      const double               volumetric = strain[0] + strain[1] + strain[2];
+      for (unsigned int a = 0; a < 3; ++a)
+        {
+          result.stress[a] =
+            bulk * volumetric + 2. * shear * (strain[a] - volumetric / 3.);
+          result.moduli[a].fill(lame());
+          result.moduli[a][a] += 2. * shear;
+        }
+      result.secant.fill(2. * shear);
+      return result;
+    }
   };
-
 
   /** Hencky's elasticity from the total deformation; keeps no history. */
   class LogStrainElastic final : public PointwiseLaw<LogStrainElastic>
   {
   public:
-    LogStrainElastic(const MaterialSpec     &spec,
-                     const HenckyElasticity &elasticity);
-
-    static void
-    declare_parameters(dealii::ParameterHandler &prm);
-
-    static std::unique_ptr<const Material>
-    create(dealii::ParameterHandler &prm,
-           const MaterialSpec       &spec,
-           PointLayout              &history);
+    LogStrainElastic(const MaterialSpec &spec,
+                     PointLayout &,
+                     const ElasticConstants &elasticity)
+      : PointwiseLaw(spec, elasticity.young, elasticity.longitudinal_modulus())
+      , elasticity{elasticity}
+    {}
 
     bool
-    evaluate_point(const Step &step,
-                   bool        with_tangent,
-                   Response   &response) const;
+    evaluate_one(const Step &step,
+                 const bool  with_tangent,
+                 Response   &response) const override
+    {
+      // b does not tell a body from its mirror image, J does
+      LogStrain::PrincipalStrains principal;
+      if (!(dealii::determinant(step.total) > 0.) ||
+          !LogStrain::decompose(
+            dealii::Physics::Elasticity::Kinematics::b(step.total), principal))
+        return false;
+
+      const auto stress         = elasticity.stress(principal.strain);
+      response.kirchhoff_stress = LogStrain::compose(stress.stress, principal);
+      response.potential        = elasticity.energy(principal.strain);
+      if (with_tangent)
+        LogStrain::lie_tangent(principal, stress, response.tangent);
+      return std::isfinite(response.potential);
+    }
 
     Energy
     energy(const dealii::Tensor<2, 3> &deformation_gradient,
-           const double               *history) const override;
+           const double *) const override
+    {
+      return {elasticity.energy(dealii::Physics::Elasticity::Kinematics::b(
+                deformation_gradient)),
+              0.};
+    }
 
   private:
     const HenckyElasticity elasticity;
   };
-
-
-  inline double
-  HenckyElasticity::energy(const std::array<double, 3> &strain) const
-  {
-    const double volumetric = strain[0] + strain[1] + strain[2];
-    double       squares    = 0.;
-    for (const double e : strain)
-      squares += (e - volumetric / 3.) * (e - volumetric / 3.);
-    return 0.5 * bulk * volumetric * volumetric + shear * squares;
-  }
-
-  inline LogStrain::PrincipalStress
-  HenckyElasticity::stress(const std::array<double, 3> &strain) const
-  {
-    LogStrain::PrincipalStress result;
-    const double               volumetric = strain[0] + strain[1] + strain[2];
-    for (unsigned int a = 0; a < 3; ++a)
-      {
-        result.stress[a] =
-          bulk * volumetric + 2. * shear * (strain[a] - volumetric / 3.);
-        result.moduli[a].fill(lame());
-        result.moduli[a][a] += 2. * shear;
-      }
-    result.secant.fill(2. * shear);
-    return result;
-  }
 } // namespace impm
 
 #endif

@@ -1,12 +1,13 @@
 #ifndef impm_materials_log_strain_von_mises_h
 #define impm_materials_log_strain_von_mises_h
 
-#include <deal.II/base/parameter_handler.h>
+#include <deal.II/physics/transformations.h>
 
+#include <impm/materials/hardening/linear.h>
 #include <impm/materials/log_strain_elastic.h>
 
 #include <array>
-#include <memory>
+#include <cmath>
 
 namespace impm
 {
@@ -31,45 +32,118 @@ namespace impm
   class LogStrainVonMises final : public PointwiseLaw<LogStrainVonMises>
   {
   public:
-    /**
-     * Yield stress sigma_y (Pa, > 0) and slope H >= 0 (Pa) of the yield
-     * stress over the equivalent plastic strain.
-     */
     LogStrainVonMises(const MaterialSpec     &spec,
                       PointLayout            &history,
-                      const HenckyElasticity &elasticity,
-                      double                  yield_stress,
-                      double                  hardening);
-
-    static void
-    declare_parameters(dealii::ParameterHandler &prm);
-
-    static std::unique_ptr<const Material>
-    create(dealii::ParameterHandler &prm,
-           const MaterialSpec       &spec,
-           PointLayout              &history);
+                      const ElasticConstants &elasticity,
+                      const LinearHardening  &hardening)
+      : PointwiseLaw(spec, elasticity.young, elasticity.longitudinal_modulus())
+      , elasticity{elasticity}
+      , hardening(hardening)
+      , elastic(history, "elastic_left_cauchy_green")
+      , plastic_offset(
+          history.add("equivalent_plastic_strain", PointLayout::Kind::scalar))
+    {}
 
     void
-    initialize_history(double *history) const override;
+    initialize_history(double *history) const override
+    {
+      elastic.store(dealii::unit_symmetric_tensor<3>(), history);
+    }
 
     bool
-    evaluate_point(const Step &step,
-                   bool        with_tangent,
-                   Response   &response) const;
+    evaluate_one(const Step &step,
+                 const bool  with_tangent,
+                 Response   &response) const override
+    {
+      if (!(dealii::determinant(step.increment) > 0.) ||
+          !(dealii::determinant(step.total) > 0.))
+        return false;
+
+      const auto trial =
+        dealii::Physics::Transformations::Contravariant::push_forward(
+          elastic.load(step.history), step.increment);
+      LogStrain::PrincipalStrains principal;
+      if (!LogStrain::decompose(trial, principal))
+        return false;
+
+      auto                  stress = elasticity.stress(principal.strain);
+      std::array<double, 3> elastic_strain = principal.strain;
+      double                alpha          = step.history[plastic_offset];
+
+      const double mean =
+        (stress.stress[0] + stress.stress[1] + stress.stress[2]) / 3.;
+      std::array<double, 3> deviator;
+      double                squares = 0.;
+      for (unsigned int a = 0; a < 3; ++a)
+        {
+          deviator[a] = stress.stress[a] - mean;
+          squares += deviator[a] * deviator[a];
+        }
+      const double q = std::sqrt(1.5 * squares);
+
+      const double excess = q - hardening.yield_stress(alpha);
+      if (excess > 0.)
+        {
+          const double shear      = elasticity.shear;
+          const double resistance = 3. * shear + hardening.modulus;
+          const double flow       = excess / resistance;
+          alpha += flow;
+
+          // The deviator shrinks onto the yield limit along its own direction.
+          const double scale = hardening.yield_stress(alpha) / q;
+          const double mean_strain =
+            (elastic_strain[0] + elastic_strain[1] + elastic_strain[2]) / 3.;
+          std::array<double, 3> stretches_squared;
+          for (unsigned int a = 0; a < 3; ++a)
+            {
+              elastic_strain[a] =
+                mean_strain + scale * (elastic_strain[a] - mean_strain);
+              stretches_squared[a] = std::exp(2. * elastic_strain[a]);
+              stress.stress[a]     = mean + scale * deviator[a];
+            }
+          elastic.store(LogStrain::compose(stretches_squared, principal),
+                        step.trial_history);
+
+          // The scale itself changes with the trial strains, through q only.
+          if (with_tangent)
+            {
+              const double softening =
+                9. * shear * shear * (1. / resistance - flow / q);
+              const double lame = elasticity.bulk - 2. / 3. * shear * scale;
+              for (unsigned int a = 0; a < 3; ++a)
+                {
+                  for (unsigned int b = 0; b < 3; ++b)
+                    stress.moduli[a][b] =
+                      lame - softening * (deviator[a] / q) * (deviator[b] / q);
+                  stress.moduli[a][a] += 2. * shear * scale;
+                }
+              stress.secant.fill(2. * shear * scale);
+            }
+        }
+      else
+        elastic.store(trial, step.trial_history);
+      step.trial_history[plastic_offset] = alpha;
+
+      response.kirchhoff_stress = LogStrain::compose(stress.stress, principal);
+      response.potential =
+        elasticity.energy(elastic_strain) + hardening.work(alpha);
+      if (with_tangent)
+        LogStrain::lie_tangent(principal, stress, response.tangent);
+      return std::isfinite(response.potential);
+    }
 
     Energy
-    energy(const dealii::Tensor<2, 3> &deformation_gradient,
-           const double               *history) const override;
+    energy(const dealii::Tensor<2, 3> &, const double *history) const override
+    {
+      return {elasticity.energy(elastic.load(history)),
+              hardening.work(history[plastic_offset])};
+    }
 
   private:
-    /** Plastic work sigma_y alpha + H / 2 alpha^2 (J/m^3). */
-    double
-    plastic_work(double equivalent_plastic_strain) const;
-
     const HenckyElasticity elasticity;
-    const double           yield_stress, hardening;
-    const PointLayout      storage; ///< knows how tensors are stored
-    const unsigned int     elastic_offset, plastic_offset;
+    const LinearHardening  hardening;
+    const HistoryTensor    elastic;
+    const unsigned int     plastic_offset;
   };
 } // namespace impm
 

@@ -7,11 +7,7 @@
 #include <impm/points/point_layout.h>
 
 #include <cmath>
-
-namespace dealii
-{
-  class ParameterHandler;
-}
+#include <string>
 
 namespace impm
 {
@@ -27,7 +23,6 @@ namespace impm
     double initial_temperature = 0; ///< (K), if it has a specific heat
   };
 
-
   /**
    * A constitutive law: from the deformation over one step and the history at
    * its start to the stress, its tangent, the energy and the history at its
@@ -41,7 +36,7 @@ namespace impm
    * All tensors are 3 x 3 and live in the current configuration, whatever the
    * dimension of the scene.
    */
-  class Material
+  class Material : public MaterialSpec
   {
   public:
     /** One step at one point. */
@@ -67,16 +62,6 @@ namespace impm
       double                      dt;
       const double *const        *histories;
       double *const              *trial_histories;
-
-      Step
-      step(const unsigned int point) const
-      {
-        return {increments[point],
-                totals[point],
-                dt,
-                histories[point],
-                trial_histories[point]};
-      }
     };
 
     /** What a law takes the step for, and with it what its tangent is. */
@@ -124,52 +109,37 @@ namespace impm
     Material(const MaterialSpec &spec,
              const double        stiffness,
              const double        longitudinal_modulus)
-      : density(spec.density)
-      , average_volume(spec.average_volume)
-      , specific_heat(spec.specific_heat)
-      , initial_temperature(spec.initial_temperature)
+      : MaterialSpec(spec)
       , scale(stiffness)
       , longitudinal_modulus(longitudinal_modulus)
     {}
 
     virtual ~Material() = default;
 
-    /** Declares the entry of the density, for the laws. */
-    static void
-    declare_density(dealii::ParameterHandler &prm);
-
-    /** Writes the history of a point that has not been deformed. */
+    /** Writes what is not zero in the history of an undeformed point. */
     virtual void
     initialize_history(double *) const
     {}
 
     /**
-     * Evaluates the law at all points of a batch, a response for each.
-     * Returns false when some point has no stress (J <= 0, no finite numbers);
-     * the other results are then meaningless and the caller backs off.
-     * Allocates nothing. See PointwiseLaw for laws that look at one point
-     * after the other.
+     * Stress, and tangent if asked for, at one point. Returns false when it has
+     * no stress (J <= 0, no finite numbers); the response is then meaningless
+     * and the caller backs off. Allocates nothing.
+     */
+    virtual bool
+    evaluate_one(const Step &step,
+                 bool        with_tangent,
+                 Response   &response) const = 0;
+
+    /**
+     * The same at all points of a batch, a response for each; false when some
+     * point has no stress. Laws that look at one point after the other have it
+     * from PointwiseLaw.
      */
     virtual bool
     evaluate(const Batch &batch,
              bool         with_tangent,
              Response    *responses) const = 0;
-
-    /** The same at one point. */
-    bool
-    evaluate_one(const Step &step,
-                 const bool  with_tangent,
-                 Response   &response) const
-    {
-      return evaluate({1,
-                       &step.increment,
-                       &step.total,
-                       step.dt,
-                       &step.history,
-                       &step.trial_history},
-                      with_tangent,
-                      &response);
-    }
 
     /** Energy in the state (F, history) at the end of a step. */
     virtual Energy
@@ -200,7 +170,7 @@ namespace impm
     virtual bool
     has_potential() const
     {
-      return true;
+      return has_symmetric_tangent();
     }
 
     /**
@@ -220,13 +190,63 @@ namespace impm
       return std::sqrt(longitudinal_modulus / density);
     }
 
-    // those of MaterialSpec
-    const double density;
-    const bool   average_volume;
-    const double specific_heat, initial_temperature;
-
   private:
     const double scale, longitudinal_modulus;
+  };
+
+  /**
+   * A law (final, derived from Base) that evaluates one point after the other:
+   * one virtual call is made for a batch.
+   */
+  template <typename Law, typename Base = Material>
+  class PointwiseLaw : public Base
+  {
+  public:
+    using Base::Base;
+
+    bool
+    evaluate(const Material::Batch &batch,
+             const bool             with_tangent,
+             Material::Response    *responses) const final
+    {
+      const auto &law = static_cast<const Law &>(*this);
+      for (unsigned int p = 0; p < batch.n_points; ++p)
+        if (!law.evaluate_one({batch.increments[p],
+                               batch.totals[p],
+                               batch.dt,
+                               batch.histories[p],
+                               batch.trial_histories[p]},
+                              with_tangent,
+                              responses[p]))
+          return false;
+      return true;
+    }
+  };
+
+  /** A symmetric tensor that a law keeps in its history. */
+  class HistoryTensor
+  {
+  public:
+    HistoryTensor(PointLayout &history, const std::string &name)
+      : storage(history.geometry)
+      , offset(history.add(name, PointLayout::Kind::symmetric_tensor))
+    {}
+
+    dealii::SymmetricTensor<2, 3>
+    load(const double *history) const
+    {
+      return storage.load_symmetric(history + offset);
+    }
+
+    void
+    store(const dealii::SymmetricTensor<2, 3> &tensor, double *history) const
+    {
+      storage.store_symmetric(tensor, history + offset);
+    }
+
+  private:
+    const PointLayout  storage; ///< knows how tensors are stored
+    const unsigned int offset;
   };
 } // namespace impm
 

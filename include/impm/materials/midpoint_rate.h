@@ -18,14 +18,15 @@ namespace impm
    */
   struct MidpointRate
   {
-    /** Returns false when the step has no middle. */
+    /** Returns false when the step turns inside out or has no middle. */
     bool
     measure(const dealii::Tensor<2, 3> &increment)
     {
       const dealii::Tensor<2, 3> unit = dealii::unit_symmetric_tensor<3>();
       const auto                 g    = increment - unit;
       const auto                 half = unit + 0.5 * g;
-      if (!(dealii::determinant(half) > 0))
+      if (!(dealii::determinant(increment) > 0) ||
+          !(dealii::determinant(half) > 0))
         return false;
       inverse      = dealii::invert(half);
       const auto h = g * inverse;
@@ -36,16 +37,31 @@ namespace impm
       return true;
     }
 
-    /** d strain with a change L dF of dF, and that of Q. */
-    void
-    differentiate(const dealii::Tensor<2, 3>    &L,
-                  const dealii::Tensor<2, 3>    &increment,
-                  dealii::SymmetricTensor<2, 3> &strain_change,
-                  dealii::Tensor<2, 3>          &rotation_change) const
+    /**
+     * Material::Response::full_tangent. `change(d strain, dQ, stretches)` gives
+     * the change of the Kirchhoff stress where dF becomes dF + L dF, for each
+     * L = e_k x e_l; whether L stretches tells that J grows by tr L = 1.
+     */
+    template <typename Change>
+    dealii::Tensor<4, 3>
+    tangent(const dealii::Tensor<2, 3> &increment, const Change &change) const
     {
-      const auto h_change = inverse * L * increment * inverse;
-      strain_change       = dealii::symmetrize(h_change);
-      rotation_change     = spin_inverse * skew(h_change) * spin_inverse;
+      dealii::Tensor<4, 3> result;
+      for (unsigned int k = 0; k < 3; ++k)
+        for (unsigned int l = 0; l < 3; ++l)
+          {
+            dealii::Tensor<2, 3> L;
+            L[k][l]             = 1;
+            const auto h_change = inverse * L * increment * inverse;
+            const dealii::SymmetricTensor<2, 3> stress =
+              change(dealii::symmetrize(h_change),
+                     spin_inverse * skew(h_change) * spin_inverse,
+                     k == l);
+            for (unsigned int i = 0; i < 3; ++i)
+              for (unsigned int j = 0; j < 3; ++j)
+                result[i][j][k][l] = stress[i][j];
+          }
+      return result;
     }
 
     dealii::SymmetricTensor<2, 3> strain;

@@ -2,9 +2,10 @@
 #define impm_materials_neo_hookean_h
 
 #include <impm/materials/elastic_constants.h>
-#include <impm/materials/pointwise_law.h>
+#include <impm/materials/material.h>
 
-#include <memory>
+#include <cmath>
+#include <limits>
 
 namespace impm
 {
@@ -26,45 +27,96 @@ namespace impm
   class NeoHookean final : public PointwiseLaw<NeoHookean<decoupled>>
   {
   public:
-    NeoHookean(const MaterialSpec &spec, const ElasticConstants &constants);
-
-    static void
-    declare_parameters(dealii::ParameterHandler &prm);
-
-    static std::unique_ptr<const Material>
-    create(dealii::ParameterHandler &prm,
-           const MaterialSpec       &spec,
-           PointLayout              &history);
+    NeoHookean(const MaterialSpec &spec,
+               PointLayout &,
+               const ElasticConstants &constants)
+      : PointwiseLaw<NeoHookean>(spec,
+                                 constants.young,
+                                 constants.longitudinal_modulus())
+      , constants(constants)
+      , volumetric(decoupled ? constants.bulk : constants.lame())
+    {}
 
     bool
-    evaluate_point(const Material::Step &step,
-                   bool                  with_tangent,
-                   Material::Response   &response) const;
+    evaluate_one(const Material::Step &step,
+                 const bool            with_tangent,
+                 Material::Response   &response) const override
+    {
+      dealii::SymmetricTensor<2, 3> b_minus_1;
+      const double                  log_J = measure(step.total, b_minus_1);
+      const auto                    unit  = dealii::unit_symmetric_tensor<3>();
+      const double                  pressure = volumetric * log_J;
+      const double                  shear    = decoupled ?
+                                                 constants.shear * std::exp(-2. / 3. * log_J) :
+                                                 constants.shear;
+      const dealii::SymmetricTensor<2, 3> shape =
+        shear * (decoupled ? dealii::deviator(b_minus_1) : b_minus_1);
+      response.kirchhoff_stress = shape + pressure * unit;
+      response.potential        = potential(b_minus_1, log_J);
+      if (with_tangent && decoupled)
+        {
+          // eq. 21 times J, where the mu of 2 mu [...] is G tr(b) / (3 J^(2/3))
+          const double mu = shear * (1. + dealii::trace(b_minus_1) / 3.);
+          response.tangent =
+            isotropic_tensor(volumetric - 2. / 3. * mu, 2. * (mu - pressure)) -
+            2. / 3. *
+              (dealii::outer_product(shape, unit) +
+               dealii::outer_product(unit, shape));
+        }
+      else if (with_tangent)
+        response.tangent =
+          isotropic_tensor(volumetric, 2. * (shear - pressure));
+      return std::isfinite(response.potential);
+    }
 
     Material::Energy
-    energy(const dealii::Tensor<2, 3> &deformation_gradient,
-           const double               *history) const override;
+    energy(const dealii::Tensor<2, 3> &F, const double *) const override
+    {
+      dealii::SymmetricTensor<2, 3> b_minus_1;
+      const double                  log_J = measure(F, b_minus_1);
+      return {potential(b_minus_1, log_J), 0.};
+    }
 
   private:
-    struct Strain
+    /** Sets F F^T - 1 and returns ln J; NaN where J <= 0, as all else then. */
+    static double
+    measure(const dealii::Tensor<2, 3>    &F,
+            dealii::SymmetricTensor<2, 3> &b_minus_1)
     {
-      dealii::SymmetricTensor<2, 3> b_minus_1; ///< F F^T - 1
-      double                        log_J;
-    };
+      // In terms of H = F - 1, so that small strains keep all of their digits.
+      dealii::Tensor<2, 3> H = F;
+      for (unsigned int d = 0; d < 3; ++d)
+        H[d][d] -= 1.;
+      for (unsigned int i = 0; i < 3; ++i)
+        for (unsigned int j = i; j < 3; ++j)
+          b_minus_1[i][j] = H[i][j] + H[j][i] + H[i] * H[j];
 
-    /** Returns false where J <= 0. */
-    static bool
-    measure(const dealii::Tensor<2, 3> &F, Strain &strain);
+      const double trace  = dealii::trace(H);
+      const double second = H[0][0] * H[1][1] - H[0][1] * H[1][0] +
+                            H[1][1] * H[2][2] - H[1][2] * H[2][1] +
+                            H[2][2] * H[0][0] - H[2][0] * H[0][2];
+      const double J_minus_1 = trace + second + dealii::determinant(H);
+      const double J         = dealii::determinant(F);
+      if (!(J > 0.))
+        return std::numeric_limits<double>::quiet_NaN();
+      return std::abs(J_minus_1) < 0.5 ? std::log1p(J_minus_1) : std::log(J);
+    }
 
     /** psi (J/m^3). */
     double
-    potential(const Strain &strain) const;
+    potential(const dealii::SymmetricTensor<2, 3> &b_minus_1,
+              const double                         log_J) const
+    {
+      const double trace  = dealii::trace(b_minus_1);
+      const double shrink = std::expm1(-2. / 3. * log_J); // J^(-2/3) - 1
+      const double shape =
+        decoupled ? 3. * shrink + trace + shrink * trace : trace - 2. * log_J;
+      return 0.5 * constants.shear * shape + 0.5 * volumetric * log_J * log_J;
+    }
 
     const ElasticConstants constants;
+    const double           volumetric; ///< of (ln J)^2 / 2 (Pa)
   };
-
-  using CoupledNeoHookean   = NeoHookean<false>;
-  using DecoupledNeoHookean = NeoHookean<true>;
 } // namespace impm
 
 #endif

@@ -5,7 +5,7 @@
 #include <impm/materials/hardening/bilinear.h>
 #include <impm/materials/material.h>
 
-#include <memory>
+#include <cmath>
 #include <optional>
 
 namespace impm
@@ -26,43 +26,24 @@ namespace impm
     RateLaw(const MaterialSpec     &spec,
             PointLayout            &history,
             const ElasticConstants &constants,
-            const Hardening        &hardening = {});
-
-    static void
-    declare_elastic(dealii::ParameterHandler &prm);
-
-    static void
-    declare_von_mises(dealii::ParameterHandler &prm);
-
-    template <typename Law>
-    static std::unique_ptr<const Material>
-    create_elastic(dealii::ParameterHandler &prm,
-                   const MaterialSpec       &spec,
-                   PointLayout              &history)
-    {
-      return std::make_unique<Law>(spec,
-                                   history,
-                                   ElasticConstants::from_parameters(prm));
-    }
-
-    template <typename Law>
-    static std::unique_ptr<const Material>
-    create_von_mises(dealii::ParameterHandler &prm,
-                     const MaterialSpec       &spec,
-                     PointLayout              &history)
-    {
-      return std::make_unique<Law>(spec,
-                                   history,
-                                   ElasticConstants::from_parameters(prm),
-                                   read_hardening(prm));
-    }
-
-    void
-    initialize_history(double *history) const override;
+            const Hardening        &hardening = {})
+      : Material(spec, constants.young, constants.longitudinal_modulus())
+      , constants(constants)
+      , stress_field(history, "cauchy_stress")
+      , hardening(hardening)
+      , plastic_offset(hardening ? history.add("equivalent_plastic_strain",
+                                               PointLayout::Kind::scalar) :
+                                   0)
+    {}
 
     Energy
     energy(const dealii::Tensor<2, 3> &deformation_gradient,
-           const double               *history) const override;
+           const double               *history) const override
+    {
+      return {dealii::determinant(deformation_gradient) *
+                elastic_energy(stress_field.load(history)),
+              hardening ? plastic_work(history[plastic_offset]) : 0.};
+    }
 
   protected:
     /** The stress at the end of a step, and how it follows the trial stress. */
@@ -83,18 +64,35 @@ namespace impm
       }
     };
 
+    /** Also stores the history at the end. */
     Return
     return_stress(const dealii::SymmetricTensor<2, 3> &trial,
-                  const double                        *history) const;
-
-    dealii::SymmetricTensor<2, 3>
-    load_stress(const double *history) const
+                  const Step                          &step) const
     {
-      return storage.load_symmetric(history + stress_offset);
+      Return result;
+      result.stress = trial;
+      if (hardening)
+        {
+          const double before   = step.history[plastic_offset];
+          result.deviator       = dealii::deviator(trial);
+          result.plastic_strain = before;
+          const double q        = std::sqrt(1.5) * result.deviator.norm();
+          if (q > hardening->yield_stress(before))
+            {
+              const double resistance = 3 * constants.shear;
+              const auto   end        = hardening->flow(q, before, resistance);
+              const double flow       = end.plastic_strain - before;
+              result.plastic_strain   = end.plastic_strain;
+              result.scale = hardening->yield_stress(end.plastic_strain) / q;
+              result.steepness = 1.5 * resistance / (q * q) *
+                                 (flow / q - 1 / (resistance + end.slope));
+              result.stress -= (1 - result.scale) * result.deviator;
+            }
+          step.trial_history[plastic_offset] = result.plastic_strain;
+        }
+      stress_field.store(result.stress, step.trial_history);
+      return result;
     }
-
-    void
-    store(const Return &end, double *history) const;
 
     /** C : strain. */
     dealii::SymmetricTensor<2, 3>
@@ -107,7 +105,13 @@ namespace impm
 
     /** sigma : C^-1 : sigma / 2 (J/m^3). */
     double
-    elastic_energy(const dealii::SymmetricTensor<2, 3> &stress) const;
+    elastic_energy(const dealii::SymmetricTensor<2, 3> &stress) const
+    {
+      const double trace    = dealii::trace(stress);
+      const auto   deviator = dealii::deviator(stress);
+      return trace * trace / (18 * constants.bulk) +
+             deviator * deviator / (4 * constants.shear);
+    }
 
     /** Plastic work (J/m^3). */
     double
@@ -117,14 +121,11 @@ namespace impm
     }
 
     const ElasticConstants constants;
+    const HistoryTensor    stress_field;
 
   private:
-    static BilinearHardening
-    read_hardening(dealii::ParameterHandler &prm);
-
     const Hardening    hardening;
-    const PointLayout  storage; ///< knows how tensors are stored
-    const unsigned int stress_offset, plastic_offset;
+    const unsigned int plastic_offset;
   };
 } // namespace impm
 

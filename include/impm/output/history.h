@@ -2,16 +2,17 @@
 #define impm_output_history_h
 
 #include <impm/balance/step_problem.h>
-#include <impm/input/sections/output.h>
+#include <impm/base/files.h>
 #include <impm/points/point_fields.h>
+#include <impm/scene/scene.h>
 
 #include <fstream>
-#include <optional>
-#include <string>
-#include <vector>
 
 namespace impm
 {
+  /** Names and their values, in the order in which they are shown. */
+  using Figures = std::vector<std::pair<std::string, double>>;
+
   /** What happened in steps, apart from what points and grid tell. */
   struct StepReport
   {
@@ -48,11 +49,6 @@ namespace impm
   Totals<dim>
   total(const MaterialPoints<dim> &points);
 
-  /** Names of the columns of history.csv in their order. */
-  template <int dim>
-  std::vector<std::string>
-  history_columns(const OutputSpec &output, GeometryKind geometry);
-
   /** history.csv: a header line, then rows, each on disk at once. */
   template <int dim>
   class History
@@ -62,20 +58,19 @@ namespace impm
      * Finds the points that probes follow. Throws InputError for a probe that
      * asks for what this scene does not have. Writes nothing. Collective.
      */
-    History(const OutputSpec          &output,
-            const Faces<dim>          &faces,
-            const Bodies<dim>         &bodies,
+    History(const Scene<dim>          &scene,
             const MaterialPoints<dim> &points,
             const RigidBodies<dim>    &rigid,
             const BackgroundGrid<dim> &grid);
+
+    static std::vector<std::string>
+    column_names(const Scene<dim> &scene);
 
     /** Starts the file. */
     void
     open(const std::string &directory);
 
-    /**
-     * The figures of reactions from StepProblem::end_forces(). Collective.
-     */
+    /** The figures of reactions from StepProblem::end_forces(). Collective. */
     void
     take_reactions(const StepProblem<dim> &problem, const Vector &forces);
 
@@ -86,50 +81,31 @@ namespace impm
     void
     write(const StepReport &report);
 
-    /** From now on the first rank remembers its rows. */
-    void
-    remember_rows()
-    {
-      remembers = true;
-    }
-
-    /** Those of every row. */
-    const std::vector<std::string> columns;
-
-    /** A column of the rows so far, on the first rank. */
-    std::vector<double>
-    column(const std::string &name) const;
-
-    const std::vector<std::pair<std::string, double>> &
+    /** Probes and reactions of the last row. */
+    const Figures &
     last_figures() const
     {
       return figures;
     }
 
-  private:
-    double
-    probe(unsigned int index, double time) const;
-
-    struct Follower
+    /** The columns; the first rank has their rows if `remembers_rows`. */
+    const CsvTable &
+    table() const
     {
-      std::optional<PointField<dim>> field;
-      double                         id = -1; ///< of the point, if it is one
-    };
+      return rows;
+    }
 
-    const OutputSpec                           &output;
-    const Faces<dim>                           &faces;
-    const Bodies<dim>                          &bodies;
-    const MaterialPoints<dim>                  &points;
-    const RigidBodies<dim>                     &rigid;
-    const BackgroundGrid<dim>                  &grid;
-    std::vector<Follower>                       followers; ///< by probe
-    std::vector<double>                         reactions;
-    double                                      start_kinetic_energy;
-    std::array<double, 2 * dim>                 face_start;
-    std::vector<std::pair<std::string, double>> figures;
-    std::ofstream                               file;
-    std::vector<std::vector<double>>            rows;
-    bool                                        remembers = false;
+    bool remembers_rows = false; ///< from now on
+
+  private:
+    const OutputSpec                               &output;
+    const MaterialPoints<dim>                      &points;
+    std::vector<std::function<double(double time)>> probes;
+    std::vector<double>                             reactions;
+    double                                          start_kinetic_energy;
+    Figures                                         figures;
+    std::ofstream                                   file;
+    CsvTable                                        rows;
   };
 } // namespace impm
 

@@ -5,8 +5,8 @@
 #include <impm/input/sections/output.h>
 #include <impm/points/point_fields.h>
 
+#include <map>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace impm
@@ -39,7 +39,8 @@ namespace impm
     std::vector<PointField<dim>> fields;
     unsigned int                 n_written = 0;
 
-    std::vector<std::pair<double, std::string>> point_files, grid_files;
+    /** Times and names of those that each PVD file lists. */
+    std::map<std::string, std::vector<std::pair<double, std::string>>> files;
   };
 } // namespace impm
 

@@ -1,6 +1,7 @@
 #ifndef impm_output_warnings_h
 #define impm_output_warnings_h
 
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -14,27 +15,49 @@ namespace impm
   {
   public:
     /** Takes over what reading the scene has warned of. */
-    explicit Warnings(const std::vector<std::string> &of_input);
+    explicit Warnings(const std::vector<std::string> &of_input)
+    {
+      for (const auto &text : of_input)
+        warnings.push_back({"", text, 1});
+    }
 
     /**
      * Counts what happens at an instant (s). The first text of a kind stays;
      * returns whether this is it.
      */
     bool
-    add(const std::string &kind, const std::string &text, double time);
+    add(const std::string &kind, const std::string &text, const double time)
+    {
+      for (auto &warning : warnings)
+        if (warning.kind == kind)
+          {
+            ++warning.count;
+            return false;
+          }
+      std::ostringstream dated;
+      dated << "t = " << time << " s: " << text;
+      warnings.push_back({kind, dated.str(), 1});
+      return true;
+    }
 
     /** A sentence each, with the time of the first and how many there were. */
     std::vector<std::string>
-    list() const;
+    list() const
+    {
+      std::vector<std::string> all;
+      for (const auto &[kind, text, count] : warnings)
+        all.push_back(
+          count > 1 ? text + " (" + std::to_string(count) + " times)" : text);
+      return all;
+    }
 
   private:
     struct Warning
     {
-      std::string  kind, text;
+      std::string  kind, text; ///< no kind: of the input
       unsigned int count;
     };
-    const std::vector<std::string> of_input;
-    std::vector<Warning>           warnings;
+    std::vector<Warning> warnings;
   };
 } // namespace impm
 

@@ -15,9 +15,7 @@
 
 namespace impm
 {
-  /**
-   * Particles in a grid, none of which may ever be lost.
-   */
+  /** Particles in a grid, none of which may ever be lost. */
   template <int dim>
   class SortedParticles
   {
@@ -65,7 +63,7 @@ namespace impm
     /**
      * Fills the bodies with points that carry a layout, which ends with that
      * of the laws' history. Throws InputError where seed_body() or
-     * check_tractions() does. Collective.
+     * count_points_under_tractions() does. Collective.
      */
     MaterialPoints(const PointLayout         &layout,
                    const PointLayout         &history,
@@ -110,7 +108,21 @@ namespace impm
 
     /** Whether all materials have a specific heat. */
     bool
-    have_temperature() const;
+    have_temperature() const
+    {
+      return std::all_of(materials.begin(),
+                         materials.end(),
+                         [](const auto &material) {
+                           return !material || material->specific_heat > 0;
+                         });
+    }
+
+    /**
+     * Largest speed (m/s) at which news travel: of elastic waves at rest, plus
+     * that of the fastest point. Collective.
+     */
+    double
+    largest_speed() const;
 
     double
     initial_volume(const unsigned int point) const
@@ -184,14 +196,6 @@ namespace impm
     std::vector<std::shared_ptr<const Material>> materials; ///< by body
     std::vector<double *>                        data;
   };
-
-  /**
-   * Largest speed (m/s) at which news travel: of elastic waves at rest, plus
-   * that of the fastest point. Collective.
-   */
-  template <int dim>
-  double
-  largest_speed(const MaterialPoints<dim> &points);
 } // namespace impm
 
 #endif

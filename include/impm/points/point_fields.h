@@ -17,18 +17,14 @@ namespace impm
     std::string  name;
     unsigned int n_components; ///< 1, 3 (vector) or 9 (tensor, by rows)
 
-    /**
-     * Writes the components at a point that lies at a position, once the field
-     * is prepared. Not collective.
-     */
+    /** Writes the components at a point and its position, once prepared. */
     std::function<
       void(unsigned int point, const dealii::Point<dim> &position, double *)>
       evaluate;
 
     /**
-     * Finds what the field needs of all points as they are, if anything:
-     * called before the points are evaluated, anew when they have changed.
-     * Collective.
+     * Finds what the field needs of all points, if anything: anew when they
+     * have changed. Collective.
      */
     std::function<void()> prepare = []() {};
   };
@@ -69,15 +65,15 @@ namespace impm
                    const MaterialPoints<dim> &points,
                    double                     fringe_number = 7);
 
-  /** tau at a point as it is (Pa). */
-  template <int dim>
-  dealii::SymmetricTensor<2, 3>
-  kirchhoff_stress(const MaterialPoints<dim> &points, unsigned int point);
-
   /** F at a point. */
   template <int dim>
   dealii::Tensor<2, 3>
-  deformation_gradient(const MaterialPoints<dim> &points, unsigned int point);
+  deformation_gradient(const MaterialPoints<dim> &points,
+                       const unsigned int         point)
+  {
+    return points.layout.load_tensor(points.fields(point) +
+                                     points.offset_deformation);
+  }
 } // namespace impm
 
 #endif

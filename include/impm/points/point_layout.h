@@ -4,6 +4,9 @@
 #include <deal.II/base/symmetric_tensor.h>
 #include <deal.II/base/tensor.h>
 
+#include <algorithm>
+#include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -59,14 +62,33 @@ namespace impm
      * already there is shared.
      */
     unsigned int
-    add(const std::string &name, Kind kind);
+    add(const std::string &name, const Kind kind)
+    {
+      if (const auto existing = find(name))
+        return *existing;
+      all_fields.push_back({name, kind, n_doubles, n_components(kind)});
+      n_doubles += n_components(kind);
+      return all_fields.back().offset;
+    }
 
-    bool
-    has(const std::string &name) const;
+    /** Offset of a field, if there is one of that name. */
+    std::optional<unsigned int>
+    find(const std::string &name) const
+    {
+      for (const auto &field : all_fields)
+        if (field.name == name)
+          return field.offset;
+      return std::nullopt;
+    }
 
     /** Offset of a field that exists; throws std::logic_error otherwise. */
     unsigned int
-    offset(const std::string &name) const;
+    offset(const std::string &name) const
+    {
+      if (const auto offset = find(name))
+        return *offset;
+      throw std::logic_error("points carry no field '" + name + "'");
+    }
 
     /** Number of doubles per point. */
     unsigned int
@@ -76,20 +98,77 @@ namespace impm
     }
 
     unsigned int
-    n_components(Kind kind) const;
+    n_components(const Kind kind) const
+    {
+      const bool three_d = geometry == GeometryKind::three_d;
+      switch (kind)
+        {
+          case Kind::scalar:
+            return 1;
+          case Kind::vector:
+            return three_d ? 3 : 2;
+          case Kind::symmetric_tensor:
+            return three_d ? 6 : 4;
+          case Kind::tensor:
+            return three_d ? 9 : geometry == GeometryKind::plane_strain ? 4 : 5;
+        }
+      return 0;
+    }
 
     dealii::Tensor<2, 3>
-    load_tensor(const double *values) const;
+    load_tensor(const double *values) const
+    {
+      dealii::Tensor<2, 3> t;
+      if (geometry == GeometryKind::three_d)
+        std::copy_n(values, 9, t.begin_raw());
+      else
+        {
+          std::copy_n(values, 2, t[0].begin_raw());
+          std::copy_n(values + 2, 2, t[1].begin_raw());
+          t[2][2] = geometry == GeometryKind::plane_strain ? 1. : values[4];
+        }
+      return t;
+    }
 
     void
-    store_tensor(const dealii::Tensor<2, 3> &tensor, double *values) const;
+    store_tensor(const dealii::Tensor<2, 3> &t, double *values) const
+    {
+      if (geometry == GeometryKind::three_d)
+        std::copy_n(t.begin_raw(), 9, values);
+      else
+        {
+          std::copy_n(t[0].begin_raw(), 2, values);
+          std::copy_n(t[1].begin_raw(), 2, values + 2);
+          if (geometry != GeometryKind::plane_strain)
+            values[4] = t[2][2];
+        }
+    }
 
     dealii::SymmetricTensor<2, 3>
-    load_symmetric(const double *values) const;
+    load_symmetric(const double *values) const
+    {
+      if (geometry != GeometryKind::three_d)
+        return dealii::SymmetricTensor<2, 3>(
+          {values[0], values[1], values[3], values[2], 0., 0.});
+      dealii::SymmetricTensor<2, 3> t;
+      std::copy_n(values, 6, t.begin_raw());
+      return t;
+    }
 
     void
-    store_symmetric(const dealii::SymmetricTensor<2, 3> &tensor,
-                    double                              *values) const;
+    store_symmetric(const dealii::SymmetricTensor<2, 3> &t,
+                    double                              *values) const
+    {
+      if (geometry == GeometryKind::three_d)
+        std::copy_n(t.begin_raw(), 6, values);
+      else
+        {
+          values[0] = t[0][0];
+          values[1] = t[1][1];
+          values[2] = t[0][1];
+          values[3] = t[2][2];
+        }
+    }
 
     const std::vector<Field> &
     fields() const
@@ -104,92 +183,6 @@ namespace impm
     unsigned int       n_doubles = 0;
   };
 
-
-  inline dealii::Tensor<2, 3>
-  PointLayout::load_tensor(const double *values) const
-  {
-    dealii::Tensor<2, 3> t;
-    if (geometry == GeometryKind::three_d)
-      {
-        for (unsigned int i = 0; i < 3; ++i)
-          for (unsigned int j = 0; j < 3; ++j)
-            t[i][j] = values[3 * i + j];
-      }
-    else
-      {
-        t[0][0] = values[0];
-        t[0][1] = values[1];
-        t[1][0] = values[2];
-        t[1][1] = values[3];
-        t[2][2] = geometry == GeometryKind::plane_strain ? 1. : values[4];
-      }
-    return t;
-  }
-
-  inline void
-  PointLayout::store_tensor(const dealii::Tensor<2, 3> &t, double *values) const
-  {
-    if (geometry == GeometryKind::three_d)
-      {
-        for (unsigned int i = 0; i < 3; ++i)
-          for (unsigned int j = 0; j < 3; ++j)
-            values[3 * i + j] = t[i][j];
-      }
-    else
-      {
-        values[0] = t[0][0];
-        values[1] = t[0][1];
-        values[2] = t[1][0];
-        values[3] = t[1][1];
-        if (geometry != GeometryKind::plane_strain)
-          values[4] = t[2][2];
-      }
-  }
-
-  inline dealii::SymmetricTensor<2, 3>
-  PointLayout::load_symmetric(const double *values) const
-  {
-    dealii::SymmetricTensor<2, 3> t;
-    if (geometry == GeometryKind::three_d)
-      {
-        t[0][0] = values[0];
-        t[1][1] = values[1];
-        t[2][2] = values[2];
-        t[0][1] = values[3];
-        t[0][2] = values[4];
-        t[1][2] = values[5];
-      }
-    else
-      {
-        t[0][0] = values[0];
-        t[1][1] = values[1];
-        t[0][1] = values[2];
-        t[2][2] = values[3];
-      }
-    return t;
-  }
-
-  inline void
-  PointLayout::store_symmetric(const dealii::SymmetricTensor<2, 3> &t,
-                               double *values) const
-  {
-    if (geometry == GeometryKind::three_d)
-      {
-        values[0] = t[0][0];
-        values[1] = t[1][1];
-        values[2] = t[2][2];
-        values[3] = t[0][1];
-        values[4] = t[0][2];
-        values[5] = t[1][2];
-      }
-    else
-      {
-        values[0] = t[0][0];
-        values[1] = t[1][1];
-        values[2] = t[0][1];
-        values[3] = t[2][2];
-      }
-  }
 } // namespace impm
 
 #endif

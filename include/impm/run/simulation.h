@@ -1,7 +1,6 @@
 #ifndef impm_run_simulation_h
 #define impm_run_simulation_h
 
-#include <deal.II/base/conditional_ostream.h>
 #include <deal.II/base/timer.h>
 
 #include <impm/app/command_line.h>
@@ -55,8 +54,9 @@ namespace impm
     void
     advance();
 
-    /** Prepares a step from points and grid as they are and solves it. */
-    NewtonSolver::Result
+    /** Prepares a step from points and grid as they are and solves it. Returns
+     * why the result must not be used; empty if it may. */
+    std::string
     attempt(double dt);
 
     /** Lets the policy change the cells. */
@@ -67,13 +67,13 @@ namespace impm
     void
     commit();
 
+    /** The time step (s) of a CFL number of one. Collective. */
+    double
+    cfl_unit() const;
+
     /** What time steps are counted in (s): a CFL number of one, or 1. */
     double
     step_unit() const;
-
-    /** That of a CFL number of one. */
-    double
-    cfl_unit() const;
 
     /** Warns of steps beyond what the integrator is stable in. */
     void
@@ -94,6 +94,11 @@ namespace impm
     void
     picture(bool grid_has_increment);
 
+    /**
+     * A picture, and points, grid and state in directory/checkpoint: in one of
+     * two places in turn, and the file last_good names the new one once it is
+     * complete.
+     */
     void
     save_last_good_state(const std::string &reason);
 
@@ -102,10 +107,9 @@ namespace impm
                   const std::string &status,
                   const FinerRuns   &finer_runs);
 
-    const Scene<dim>           scene;
-    const MPI_Comm             communicator;
-    dealii::ConditionalOStream silence;
-    dealii::TimerOutput        timer;
+    const Scene<dim>    scene;
+    const MPI_Comm      communicator;
+    dealii::TimerOutput timer;
 
     // What outlives a step.
     BackgroundGrid<dim>                    grid;
@@ -115,29 +119,23 @@ namespace impm
     double                                 time = 0;
     StepControl                            control;
 
-    const std::unique_ptr<TimeIntegrator>        integrator;
-    const std::unique_ptr<FootprintBuilder<dim>> builder;
-    WorkCounts                                   counts;
-    std::unique_ptr<StepProblem<dim>>            problem; ///< of this step
-    StepResult                                   result;
-    WorkDone<dim>                                work;
+    const std::unique_ptr<TimeIntegrator> integrator;
+    FootprintBuilder<dim>                 builder;
+    WorkCounts                            counts;
+    std::unique_ptr<StepProblem<dim>>     problem; ///< of this step
+    StepResult                            result;
+    WorkDone<dim>                         work;
 
     Pictures<dim>             pictures;
     History<dim>              history;
     Reference<dim>            reference;
     Console                   console;
     Warnings                  warnings;
-    unsigned int              n_steps = 0;  ///< completed
     std::array<bool, 2 * dim> face_holds{}; ///< material, in the last step
     dealii::Timer             wall;
     std::string               directory;
-    double                    next_picture = 0;
-    StepReport                report;
-    struct
-    {
-      unsigned long newton = 0, linear = 0, line_searches = 0, cuts = 0,
-                    projections = 0, noise_stops = 0;
-    } sums;
+    StepReport                report; ///< of the step that is being made
+    StepReport                total;  ///< of all that are completed
   };
 } // namespace impm
 

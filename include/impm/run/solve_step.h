@@ -17,7 +17,26 @@ namespace impm
   solve_step(StepProblem<dim>    &problem,
              const SolverSpec    &spec,
              dealii::TimerOutput &timer,
-             Vector              &u);
+             Vector              &u)
+  {
+    NewtonSolver::Result result;
+    problem.discretization->initialize(u);
+    if (problem.integrator.is_explicit())
+      {
+        problem.explicit_increment(u);
+        result.converged = problem.balance.evaluate(u, false).admissible;
+        if (!result.converged)
+          result.failure = "the explicit step turns a point inside out";
+      }
+    else
+      {
+        if (problem.integrator.has_inertia())
+          u.equ(problem.dt, problem.motion.velocity);
+        result = NewtonSolver(spec, problem.balance, timer).solve(u);
+      }
+    problem.discretization->interpolate_hanging(u);
+    return result;
+  }
 } // namespace impm
 
 #endif

@@ -58,6 +58,11 @@ namespace impm
   Scene<dim>
   read_scene(dealii::ParameterHandler &prm,
              const std::string        &parameter_file = "");
+
+  /** Decides which fields the points of a scene carry. */
+  template <int dim>
+  PointLayout
+  choose_layout(const Scene<dim> &scene);
 } // namespace impm
 
 #endif

@@ -16,23 +16,15 @@ namespace impm
 {
   /** A region of space that a body fills at the start. */
   template <int dim>
-  class Shape
+  struct Shape
   {
-  public:
-    virtual ~Shape() = default;
+    /** Whether a point lies inside or on the surface. */
+    std::function<bool(const dealii::Point<dim> &)> contains;
 
-    /** Whether the point lies inside or on the surface. */
-    virtual bool
-    contains(const dealii::Point<dim> &point) const = 0;
+    /** A box around it, unless an implicit function does not know one. */
+    std::optional<dealii::BoundingBox<dim>> bounding_box;
 
-    /** A box around the shape, if it knows one (an implicit function does
-     * not). */
-    virtual std::optional<dealii::BoundingBox<dim>>
-    bounding_box() const = 0;
-
-    /** Whether the shape fills that box. */
-    virtual bool
-    is_box() const = 0;
+    bool is_box = false; ///< fills the bounding box
   };
 
   template <int dim>
@@ -53,10 +45,9 @@ namespace impm
      * shapes named before this one, for unions and differences. Throws
      * InputError with the entry's bare name.
      */
-    std::function<std::shared_ptr<const Shape<dim>>(
-      dealii::ParameterHandler            &prm,
-      const std::map<std::string, double> &constants,
-      const NamedShapes<dim>              &others)>
+    std::function<Shape<dim>(dealii::ParameterHandler            &prm,
+                             const std::map<std::string, double> &constants,
+                             const NamedShapes<dim>              &others)>
       create;
   };
 

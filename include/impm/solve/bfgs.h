@@ -1,10 +1,9 @@
 #ifndef impm_solve_bfgs_h
 #define impm_solve_bfgs_h
 
-#include <impm/base/vector.h>
+#include <impm/solve/sparse_matrix.h>
 
 #include <deque>
-#include <functional>
 
 namespace impm
 {
@@ -17,10 +16,6 @@ namespace impm
   class Bfgs
   {
   public:
-    explicit Bfgs(const unsigned int largest_number)
-      : largest_number(largest_number)
-    {}
-
     /** After K_0 has become another. */
     void
     clear()
@@ -28,11 +23,10 @@ namespace impm
       pairs.clear();
     }
 
-    /** Whether it is time for another K_0. */
-    bool
-    is_full() const
+    unsigned int
+    n_updates() const
     {
-      return pairs.size() >= largest_number;
+      return pairs.size();
     }
 
     /**
@@ -43,12 +37,9 @@ namespace impm
     void
     add(const Vector &change, const Vector &residual_change);
 
-    /** Writes K_0^-1 times the second vector into the first. */
-    using Solve = std::function<void(Vector &, const Vector &)>;
-
-    /** dst = the corrected inverse times src. Collective. */
+    /** dst = K_0^-1, corrected, times src. Collective. */
     void
-    apply(Vector &dst, const Vector &src, const Solve &solve) const;
+    apply(Vector &dst, const Vector &src, const LinearMap &inverse) const;
 
   private:
     struct Pair
@@ -56,10 +47,7 @@ namespace impm
       Vector change, residual_change;
       double product;
     };
-
-    const unsigned int largest_number;
-    std::deque<Pair>   pairs; ///< the oldest first
-    mutable Vector     work;
+    std::deque<Pair> pairs; ///< the oldest first
   };
 } // namespace impm
 

@@ -4,7 +4,7 @@
 #include <impm/input/sections/solver.h>
 #include <impm/solve/nonlinear_system.h>
 
-#include <vector>
+#include <limits>
 
 namespace impm
 {
@@ -24,15 +24,6 @@ namespace impm
     explicit ConvergenceTest(const SolverSpec &spec)
       : spec(spec)
     {}
-
-    /** Forgets the step before. */
-    void
-    begin_step();
-
-    /** What the step has to solve: the parts of the residual at its first
-     * guess. */
-    void
-    set_first_residual(std::vector<double> parts);
 
     /** An iteration with the norm of its change and its energy du Q (N m). */
     void
@@ -59,17 +50,20 @@ namespace impm
     bool
     stagnates(const Evaluation &now);
 
+    /** What the step has to solve: the residual of its first guess, by parts.
+     */
+    std::vector<double> first_residual;
+
   private:
     bool
     changes_little() const;
 
-    const SolverSpec   &spec;
-    std::vector<double> first_residual;
-    double              smallest_residual = 0;
-    unsigned int        n_in_vain         = 0;
-    bool                any               = false;
-    double              largest_change = 0, first_energy = 0;
-    double              change = 0, energy = 0; ///< of the last iteration
+    const SolverSpec &spec;
+    double            smallest_residual = std::numeric_limits<double>::max();
+    unsigned int      n_in_vain         = 0;
+    bool              any               = false;
+    double            largest_change = 0, first_energy = 0;
+    double            change = 0, energy = 0; ///< of the last iteration
   };
 } // namespace impm
 

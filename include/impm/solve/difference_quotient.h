@@ -14,7 +14,10 @@ namespace impm
   class DifferenceQuotient
   {
   public:
-    DifferenceQuotient(NonlinearSystem &system, double step);
+    DifferenceQuotient(NonlinearSystem &system, const double step)
+      : system(system)
+      , step(step)
+    {}
 
     /** Where the system stands evaluated at the moment. */
     void
@@ -35,7 +38,7 @@ namespace impm
   private:
     /** Of an increment, or of the momentum that it stands for. */
     double
-    norm(const Vector &increment) const;
+    norm(Vector increment) const;
 
     NonlinearSystem &system;
     const double     step;

@@ -1,18 +1,18 @@
 #ifndef impm_solve_newton_solver_h
 #define impm_solve_newton_solver_h
 
+#include <impm/solve/bfgs.h>
 #include <impm/solve/convergence_test.h>
-#include <impm/solve/search_direction.h>
+#include <impm/solve/linear_solver.h>
 
 #include <string>
-#include <vector>
 
 namespace impm
 {
   /**
    * Newton's method with backtracking, or BFGS, which goes on with a tangent
    * that it corrects, for one step. Where there is a potential, an iteration
-   * must lower it (Armijo); else, the residual.
+   * must lower it (Armijo); else, the residual. All is collective.
    */
   class NewtonSolver
   {
@@ -30,7 +30,6 @@ namespace impm
       std::string         failure;               ///< why not converged
     };
 
-    /** Collective. */
     NewtonSolver(const SolverSpec    &spec,
                  NonlinearSystem     &system,
                  dealii::TimerOutput &timer);
@@ -38,7 +37,7 @@ namespace impm
     /**
      * `u` comes with a first guess that need not satisfy the constraints; what
      * is prescribed is spread into the body by the tangent there. When a
-     * result has converged, the system stands evaluated at it. Collective.
+     * result has converged, the system stands evaluated at it.
      */
     Result
     solve(Vector &u);
@@ -49,17 +48,45 @@ namespace impm
     Result
     iterate(Vector &u);
 
+    /**
+     * From a guess to an iterate that satisfies the constraints, where the
+     * system then stands evaluated: a prescribed motion alone would crush the
+     * cells next to it, so one linear solve takes it into the body.
+     */
     Evaluation
-    evaluate(const Vector &u, bool with_tangent);
+    first_iterate(Vector &u, unsigned int &n_solves);
 
-    const SolverSpec    &spec;
-    NonlinearSystem     &system;
-    dealii::TimerOutput &timer;
-    const bool           has_potential;
-    ConvergenceTest      test;
-    LinearSolver         linear_solver;
-    SearchDirection      direction;
-    Vector               step, trial;
+    /**
+     * Finds the `step` from u, where the system stands evaluated; returns its
+     * slope, negative if it descends (J).
+     */
+    double
+    find_step(const Vector &u);
+
+    /**
+     * Goes along the step from u, by its parts from the whole on, until the
+     * trial is better than `now`, which it becomes then: with a smaller
+     * potential (along a slope below zero) or residual. Returns the part, or 0
+     * if none is better. If the search is off, the first part will do that is
+     * admissible.
+     */
+    double
+    backtrack(const Vector &u, double slope, Evaluation &now);
+
+    /** At u, where the system stands evaluated. */
+    void
+    take_tangent(const Vector &u);
+
+    const SolverSpec &spec;
+    NonlinearSystem  &system;
+    const bool        has_potential, uses_bfgs;
+    ConvergenceTest   test;
+    LinearSolver      linear_solver;
+    Bfgs              bfgs;
+    bool              has_tangent = false; ///< taken in this step
+    bool              is_fresh    = false; ///< and at this iterate
+    Vector            step, trial, right_side;
+    unsigned int      n_linear_iterations = 0, n_projections = 0;
   };
 } // namespace impm
 

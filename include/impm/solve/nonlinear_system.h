@@ -1,11 +1,7 @@
 #ifndef impm_solve_nonlinear_system_h
 #define impm_solve_nonlinear_system_h
 
-#include <impm/base/vector.h>
 #include <impm/solve/sparse_matrix.h>
-
-#include <memory>
-#include <vector>
 
 namespace impm
 {
@@ -56,8 +52,8 @@ namespace impm
     virtual const Vector &
     residual() const = 0;
 
-    /** Norms of another force (N) by the parts of residuals, each the largest
-     * of those that feel each other. */
+    /** Of another force (N) by parts, each the largest of those that feel each
+     * other. */
     virtual std::vector<double>
     norms_of(const Vector &force) const = 0;
 
@@ -72,10 +68,8 @@ namespace impm
     virtual double
     work_along(const Vector &direction, const Vector &force) const = 0;
 
-    /**
-     * Replaces the tangent by a positive one, so that the next Newton step
-     * descends. Needs a symmetric tangent.
-     */
+    /** Replaces the tangent, a symmetric one, by its positive part: the next
+     * step descends. */
     virtual void
     project_tangent() = 0;
 
@@ -95,10 +89,7 @@ namespace impm
     virtual std::unique_ptr<SparseMatrix>
     make_matrix() const = 0;
 
-    /**
-     * Fills it with the tangent, where constrained with something positive on
-     * the diagonal.
-     */
+    /** Fills it, with something positive on the diagonal where constrained. */
     virtual void
     assemble(SparseMatrix &matrix) const = 0;
 

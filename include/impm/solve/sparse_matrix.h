@@ -1,16 +1,16 @@
 #ifndef impm_solve_sparse_matrix_h
 #define impm_solve_sparse_matrix_h
 
-#include <deal.II/base/index_set.h>
-#include <deal.II/base/mpi.h>
+#include <deal.II/base/partitioner.h>
 
 #include <deal.II/lac/affine_constraints.h>
 #include <deal.II/lac/full_matrix.h>
+#include <deal.II/lac/vector_operation.h>
 
 #include <impm/base/vector.h>
 
+#include <functional>
 #include <memory>
-#include <string>
 #include <vector>
 
 namespace impm
@@ -23,13 +23,12 @@ namespace impm
   class SparseMatrix
   {
   public:
-    using Dofs = std::vector<dealii::types::global_dof_index>;
+    using Dof  = dealii::types::global_dof_index;
+    using Dofs = std::vector<Dof>;
 
-    /** Rows of `owned` unknowns; entries may come in all `relevant` ones. */
-    SparseMatrix(const dealii::IndexSet                  &owned,
-                 const dealii::IndexSet                  &relevant,
-                 const dealii::AffineConstraints<double> &constraints,
-                 MPI_Comm                                 communicator);
+    /** The constraints must live as long. */
+    SparseMatrix(const dealii::Utilities::MPI::Partitioner &partitioner,
+                 const dealii::AffineConstraints<double>   &constraints);
     ~SparseMatrix();
 
     /** Says that a block of unknowns will couple; then end_pattern(). */
@@ -47,29 +46,20 @@ namespace impm
     void
     add_block(const dealii::FullMatrix<double> &block, const Dofs &dofs);
 
-    /** Adds to an entry that this rank owns. */
+    /** Adds to an entry of the diagonal that this rank owns. */
     void
-    add(dealii::types::global_dof_index row,
-        dealii::types::global_dof_index column,
-        double                          value);
+    add_to_diagonal(Dof dof, double value);
 
     /** Overwrites one. */
     void
-    set(dealii::types::global_dof_index row,
-        dealii::types::global_dof_index column,
-        double                          value);
+    set_diagonal(Dof dof, double value);
 
-    /** After a series of add...() on any rank. Collective. */
-    void
-    end_adding();
-
-    /** After a series of set(). Collective. */
-    void
-    end_setting();
-
-    /** An entry of the diagonal that this rank owns. */
     double
-    diagonal(dealii::types::global_dof_index dof) const;
+    diagonal(Dof dof) const;
+
+    /** After a series of add...() or set...() on any rank. Collective. */
+    void
+    compress(dealii::VectorOperation::values operation);
 
     void
     vmult(Vector &dst, const Vector &src) const;
@@ -78,51 +68,36 @@ namespace impm
     void
     multiply(const SparseMatrix &A, const Vector &D, const SparseMatrix &B);
 
-    struct Implementation;
-    std::unique_ptr<Implementation> implementation;
-  };
-
-  /** Smoothed aggregation (ML) for elastic bodies. */
-  class AmgPreconditioner
-  {
-  public:
-    AmgPreconditioner();
-    ~AmgPreconditioner();
-
-    /**
-     * For a matrix that stays as it is; `modes` are what costs hardly any
-     * energy, by locally owned value. Throws LinearizationError, on every rank
-     * alike, when the matrix is singular. Collective.
-     */
-    void
-    build(const SparseMatrix                     &matrix,
-          const std::vector<std::vector<double>> &modes);
-
-    void
-    vmult(Vector &dst, const Vector &src) const;
+    struct Trilinos;
+    const std::unique_ptr<Trilinos> trilinos;
 
   private:
-    struct Implementation;
-    std::unique_ptr<Implementation> implementation;
+    const dealii::AffineConstraints<double> &constraints;
   };
 
-  /** A factorization (Amesos, KLU). */
-  class DirectSolver
+  /** What deal.II's solvers know of a matrix, a preconditioner, an inverse. */
+  struct LinearMap
   {
-  public:
-    /** Of a matrix that stays as it is. Throws LinearizationError, on every
-     * rank alike, when it is singular. Collective. */
-    explicit DirectSolver(const SparseMatrix &matrix);
-    ~DirectSolver();
-
-    /** Throws LinearizationError as the constructor does. Collective. */
-    void
-    solve(Vector &x, const Vector &b) const;
-
-  private:
-    struct Implementation;
-    std::unique_ptr<Implementation> implementation;
+    std::function<void(Vector &dst, const Vector &src)> vmult;
   };
+
+  /**
+   * Smoothed aggregation (ML) for elastic bodies, for a matrix that stays as it
+   * is; `modes` are what costs hardly any energy, by locally owned value.
+   * Throws LinearizationError, on every rank alike, when the matrix is
+   * singular. Collective.
+   */
+  LinearMap
+  make_amg(const SparseMatrix                     &matrix,
+           const std::vector<std::vector<double>> &modes);
+
+  /**
+   * The inverse of a matrix that stays as it is, by factorization (Amesos,
+   * KLU). Throws LinearizationError as make_amg() does, when applied, too.
+   * Collective.
+   */
+  LinearMap
+  factorize(const SparseMatrix &matrix);
 } // namespace impm
 
 #endif

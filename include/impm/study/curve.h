@@ -4,11 +4,14 @@
 #include <deal.II/base/mpi.h>
 
 #include <functional>
+#include <limits>
 #include <optional>
 #include <vector>
 
 namespace impm
 {
+  constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+
   enum class Norm
   {
     L1,
@@ -16,14 +19,11 @@ namespace impm
     max
   };
 
-  /** Norm of a quantity with weights: its mean, its root mean square, or its
-   * largest value. */
-  class WeightedNorm
+  /** The mean, the root mean square, or the largest size of a quantity. */
+  struct WeightedNorm
   {
-  public:
-    explicit WeightedNorm(const Norm norm)
-      : norm(norm)
-    {}
+    Norm   norm;
+    double weights = 0, sum = 0, largest = 0;
 
     void
     add(double weight, double size);
@@ -32,11 +32,6 @@ namespace impm
      * Collective. */
     double
     value(MPI_Comm communicator) const;
-
-  private:
-    const Norm    norm;
-    double        weights = 0, sum = 0, largest = 0;
-    unsigned long n_not_finite = 0;
   };
 
   /** A figure y over an abscissa x that does not fall; linear in between. */
@@ -57,19 +52,20 @@ namespace impm
   std::optional<Curve>
   make_curve(std::vector<double> x, std::vector<double> y);
 
-  /** Of a curve, of its reference, and of the difference. */
-  struct CurveNorms
+  /** How what was computed differs from its reference. */
+  struct Comparison
   {
-    double value, reference, error;
-    double last_value, last_reference; ///< at the last abscissa
+    /** Norms at the points; of a figure or a curve the (last) figures. */
+    double value = not_a_number, reference = not_a_number;
+    double error          = not_a_number; ///< norm of the difference
+    double reference_norm = not_a_number;
   };
 
   /**
-   * Compares at abscissas in rising order, as far as the curve reaches; L1 and
-   * L2 by the trapezoid rule, divided by the length. Nothing when no abscissa
-   * lies on the curve.
+   * Compares at abscissas on the curve in rising order, of which there must be
+   * one; L1 and L2 by the trapezoid rule, divided by the length.
    */
-  std::optional<CurveNorms>
+  Comparison
   compare_curves(const Curve                         &curve,
                  const std::function<double(double)> &reference,
                  const std::vector<double>           &abscissas,

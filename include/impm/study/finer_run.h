@@ -2,50 +2,36 @@
 #define impm_study_finer_run_h
 
 #include <impm/app/command_line.h>
-#include <impm/study/reference.h>
+#include <impm/base/files.h>
+#include <impm/input/sections/reference.h>
 
-#include <string>
-#include <vector>
+#include <map>
 
 namespace impm
 {
+  /** What a finer run of a scene has left. */
+  struct FinerRun
+  {
+    CsvTable history;
+    double   wall_seconds = 0;
+  };
+
+  /** By the name of the reference that asks for it. */
+  using FinerRuns = std::map<std::string, FinerRun>;
+
   /**
-   * The finer runs that a scene's references ask for: the same parameter file
-   * with other entries, and without references of its own.
+   * The finer runs that the references of a scene ask for, on the first rank:
+   * the same parameter file with other entries, and without references of its
+   * own. Each is made unless its directory, by default in that of the scene's
+   * run, holds it, or the command line says to check only. Throws InputError,
+   * before any is made, when one cannot be, and ComputationError if one cannot
+   * go on. Collective over all processes.
    */
   template <int dim>
-  class FinerRunner
-  {
-  public:
-    /**
-     * Reads them and builds those that have to be made, for a run into
-     * `directory`. Throws InputError when one cannot be; writes nothing.
-     * Collective.
-     */
-    FinerRunner(const std::vector<ReferenceSpec<dim>> &references,
-                const CommandLine                     &line,
-                const std::string                     &directory,
-                MPI_Comm                               communicator);
-
-    /**
-     * Makes each, unless its directory holds it. Throws ComputationError if
-     * one cannot go on. Collective.
-     */
-    FinerRuns
-    run() const;
-
-  private:
-    struct Task
-    {
-      std::string name, directory, parameters;
-      Scene<dim>  scene;
-      bool        is_there; ///< complete, and of the same parameters
-    };
-
-    std::vector<Task>            tasks;
-    const CommandLine::Verbosity verbosity;
-    const MPI_Comm               communicator;
-  };
+  FinerRuns
+  make_finer_runs(const std::vector<ReferenceSpec<dim>> &references,
+                  const CommandLine                     &line,
+                  const std::string                     &directory);
 } // namespace impm
 
 #endif

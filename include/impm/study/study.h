@@ -1,6 +1,7 @@
 #ifndef impm_study_study_h
 #define impm_study_study_h
 
+#include <impm/app/command_line.h>
 #include <impm/input/parameter_file.h>
 
 #include <string>
@@ -32,6 +33,39 @@ namespace impm
     std::vector<std::string> columns; ///< figures to show; empty: all
   };
 
+  /** Figures of summary.json that are columns of study.csv for every run. */
+  inline const std::vector<std::string> study_counts = {
+    "steps",
+    "points",
+    "newton_iterations",
+    "linear_iterations",
+    "line_searches",
+    "step_cuts",
+    "stress_evaluations",
+    "operator_applications",
+    "peak_memory_kilobytes"};
+
+  /** What came of one run of a study. */
+  struct StudyResult
+  {
+    using Numbers = std::vector<std::pair<std::string, double>>;
+
+    std::string  status; ///< "done", or why not; empty: not yet made
+    int          exit_code    = 0;
+    unsigned int ranks        = 1;
+    double       wall_seconds = 0; ///< median of the repeats
+    Numbers      counts;           ///< some of study_counts
+    Numbers      figures;          ///< last row of the history
+    Numbers      errors;           ///< by name of the reference
+    std::string  revision = "";    ///< of the program
+
+    bool
+    done() const
+    {
+      return status == "done";
+    }
+  };
+
   /** One combination of the values of the lists. */
   struct StudyRun
   {
@@ -39,12 +73,8 @@ namespace impm
     std::vector<std::string>  overrides; ///< "Section/Name=value"
     unsigned int              ranks = 1;
     std::string               name; ///< labels, and directory
+    StudyResult               result;
   };
-
-  /** Declares the section Study, with what its lists need. */
-  void
-  declare_study(dealii::ParameterHandler    &prm,
-                const ParameterFile::Chosen &chosen);
 
   /** Everything that a parameter file may hold: scene and study. */
   void
@@ -62,9 +92,20 @@ namespace impm
   std::vector<StudyRun>
   expand(const StudySpec &spec);
 
-  /** Columns of study.csv that every run has. */
-  const std::vector<std::string> &
-  study_columns();
+  /**
+   * Runs the section Study of a file, or lists its runs when told to check.
+   * Each run is a process of its own, so that none can end the study; those
+   * that the output directory holds already are not repeated. Throws
+   * InputError, before anything runs, if a combination is no scene, and
+   * ComputationError when no run went to its end. Only where MPI has not been
+   * started, or what this process starts could not start it.
+   */
+  void
+  run_study(const CommandLine &line, ParameterFile &file);
+
+  /** Whether mpirun or its like has started this process. */
+  bool
+  is_started_by_mpi();
 } // namespace impm
 
 #endif

@@ -3,6 +3,8 @@
 
 #include <impm/input/sections/time.h>
 
+#include <algorithm>
+
 namespace impm
 {
   /**
@@ -20,12 +22,31 @@ namespace impm
 
     /** Length of the next step (s) from a time on. */
     double
-    begin(double time, double unit);
+    begin(const double time, const double new_unit)
+    {
+      unit   = new_unit;
+      failed = false;
+      // The last step ends on time, and none is a sliver.
+      const double left = spec.end - time;
+      dt                = size * unit;
+      if (left < 1.001 * dt)
+        dt = left;
+      else if (left < 1.999 * dt)
+        dt = left / 2;
+      return dt;
+    }
 
     /** Of the same step with a part of its length: where it failed, the steps
      * that follow are as short. */
     double
-    cut(double part, bool has_failed);
+    cut(const double part, const bool has_failed)
+    {
+      dt *= part;
+      failed = failed || has_failed;
+      if (has_failed)
+        size = dt / unit;
+      return dt;
+    }
 
     /** Whether a step of that length is too short to go on with. */
     bool
@@ -34,9 +55,15 @@ namespace impm
       return dt < spec.smallest_step * spec.step * unit;
     }
 
-    /** The step was made. */
+    /** The step was made: grow, after cuts back to the nominal step first. */
     void
-    accept();
+    accept()
+    {
+      if (!failed)
+        size = size < spec.step ?
+                 std::min(1.5 * size, spec.step) :
+                 std::min(size * spec.growth, spec.largest_step);
+    }
 
     /** In units: what the next step will be if nothing is in its way. */
     double

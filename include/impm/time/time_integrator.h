@@ -4,6 +4,7 @@
 #include <impm/base/vector.h>
 #include <impm/input/sections/time.h>
 
+#include <limits>
 #include <memory>
 
 namespace impm
@@ -22,43 +23,55 @@ namespace impm
   public:
     virtual ~TimeIntegrator() = default;
 
-    virtual bool
-    has_inertia() const = 0;
+    bool
+    has_inertia() const
+    {
+      return mass > 0;
+    }
 
     /** Whether the forces at the start alone give the step. */
     bool
     is_explicit() const
     {
-      return has_inertia() && force_factor() == 0;
+      return force == 0;
     }
 
     /** Whether a step asks for the forces at its start, f(0). */
-    virtual bool
+    bool
     needs_start_forces() const
     {
-      return force_factor() < 1;
+      return start_forces;
+    }
+
+    /** Whether the points carry their acceleration from step to step. */
+    bool
+    keeps_acceleration() const
+    {
+      return acceleration_kept;
     }
 
     /**
      * The longest step (s) in which an undamped oscillation of a circular
      * frequency (1/s) does not grow; infinite if it never does.
      */
-    virtual double
-    stable_step(double frequency) const = 0;
-
-    /** Whether the points carry their acceleration from step to step. */
-    virtual bool
-    keeps_acceleration() const
+    double
+    stable_step(const double frequency) const
     {
-      return false;
+      return stable_angle / frequency;
     }
 
     /** (1/s^2) */
-    virtual double
-    mass_factor(double dt) const = 0;
+    double
+    mass_factor(const double dt) const
+    {
+      return mass / (dt * dt);
+    }
 
-    virtual double
-    force_factor() const = 0;
+    double
+    force_factor() const
+    {
+      return force;
+    }
 
     /**
      * The known part of the acceleration (m/s^2). `acceleration` is that at
@@ -78,6 +91,13 @@ namespace impm
                const Vector &acceleration,
                Vector       &end_velocity,
                Vector       &end_acceleration) const = 0;
+
+  protected:
+    double mass  = 1; ///< mass_factor dt^2
+    double force = 1; ///< force_factor
+    double stable_angle =
+      std::numeric_limits<double>::infinity(); ///< in a step
+    bool start_forces = false, acceleration_kept = false;
   };
 
   /** The integrator that a scene names: every one stands in here. */

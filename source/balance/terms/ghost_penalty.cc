@@ -3,8 +3,9 @@
 #include <deal.II/fe/fe_q.h>
 #include <deal.II/fe/fe_values.h>
 
+#include <deal.II/grid/grid_tools.h>
+
 #include <impm/balance/terms/ghost_penalty.h>
-#include <impm/grid/cell_neighbors.h>
 
 namespace impm
 {
@@ -38,13 +39,16 @@ namespace impm
                                   const GeometryKind         geometry,
                                   const double               gamma)
   {
-    const auto         &stiffness = populated_cells.stiffness;
-    std::vector<double> at_edge(stiffness.size());
-    for (const auto &cell : populated_cells.cells)
-      for_each_neighbor<dim>(cell.cell, [&](const auto &neighbor) {
-        if (stiffness[neighbor->active_cell_index()] == 0)
-          at_edge[cell.cell->active_cell_index()] = 1;
-      });
+    const auto                    &stiffness = populated_cells.stiffness;
+    std::vector<double>            at_edge(stiffness.size());
+    std::vector<CellIterator<dim>> adjacent;
+    for (const auto &[cell, nodes] : populated_cells.cells)
+      {
+        GridTools::get_active_neighbors<DoFHandler<dim>>(cell, adjacent);
+        for (const auto &neighbor : adjacent)
+          if (stiffness[neighbor->active_cell_index()] == 0)
+            at_edge[cell->active_cell_index()] = 1;
+      }
     exchange_cell_data(discretization, at_edge);
 
     const FE_Q<dim>       fe(1);
@@ -125,7 +129,7 @@ namespace impm
 
   template <int dim>
   void
-  GhostPenalty<dim>::add_force(const Vector &u, Vector &force) const
+  GhostPenalty<dim>::apply(const Vector &u, Vector &image) const
   {
     for (const auto &face : faces)
       for (unsigned int c = 0; c < dim; ++c)
@@ -138,43 +142,14 @@ namespace impm
               double sum = 0;
               for (unsigned int b = 0; b < face.n_nodes; ++b)
                 sum += face.matrix[a][b] * values[b];
-              force.local_element(dim * face.nodes[a] + c) += sum;
+              image.local_element(dim * face.nodes[a] + c) += sum;
             }
         }
   }
 
   template <int dim>
-  void
-  GhostPenalty<dim>::add_diagonal(Vector &diagonal) const
-  {
-    for (const auto &face : faces)
-      for (unsigned int a = 0; a < face.n_nodes; ++a)
-        for (unsigned int c = 0; c < dim; ++c)
-          diagonal.local_element(dim * face.nodes[a] + c) += face.matrix[a][a];
-  }
-
-  template <int dim>
-  void
-  GhostPenalty<dim>::add_matrix(const bool only_pattern, const Block &add) const
-  {
-    FullMatrix<double> local;
-    for (const auto &face : faces)
-      {
-        if (!only_pattern)
-          {
-            local.reinit(dim * face.n_nodes, dim * face.n_nodes);
-            for (unsigned int a = 0; a < face.n_nodes; ++a)
-              for (unsigned int b = 0; b < face.n_nodes; ++b)
-                for (unsigned int c = 0; c < dim; ++c)
-                  local(dim * a + c, dim * b + c) = face.matrix[a][b];
-          }
-        add(face.nodes.data(), face.nodes.data() + face.n_nodes, local);
-      }
-  }
-
-  template <int dim>
   double
-  GhostPenalty<dim>::energy(const Vector &u) const
+  GhostPenalty<dim>::energy(const Vector &u, const Vector & /*felt*/) const
   {
     double sum = 0;
     for (const auto &face : faces)
@@ -185,6 +160,28 @@ namespace impm
                    u.local_element(dim * face.nodes[a] + c) *
                    u.local_element(dim * face.nodes[b] + c);
     return sum;
+  }
+
+  template <int dim>
+  void
+  GhostPenalty<dim>::add_matrix(const bool       only_pattern,
+                                const TakeBlock &take) const
+  {
+    FullMatrix<double> block;
+    for (const auto &face : faces)
+      {
+        const unsigned int n = face.n_nodes;
+        if (!only_pattern)
+          {
+            block.reinit(dim * n, dim * n);
+            for (unsigned int a = 0; a < n; ++a)
+              for (unsigned int b = 0; b < n; ++b)
+                for (unsigned int c = 0; c < dim; ++c)
+                  block(dim * a + c, dim * b + c) = face.matrix[a][b];
+          }
+        take(make_array_view(face.nodes.begin(), face.nodes.begin() + n),
+             block);
+      }
   }
 
   template class GhostPenalty<2>;

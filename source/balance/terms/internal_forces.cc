@@ -1,4 +1,3 @@
-#include <impm/balance/residual_norm.h>
 #include <impm/balance/terms/internal_forces.h>
 
 namespace impm
@@ -6,41 +5,15 @@ namespace impm
   using namespace dealii;
 
   template <int dim>
-  InternalForces<dim>::InternalForces(const Footprints<dim> &footprints,
-                                      PointResponse<dim>    &response,
-                                      const double smallest_cell_extent)
-    : prints(footprints)
-    , response(response)
-    , axisymmetric(response.kinematics.axisymmetric)
-    , n_gradients(response.kinematics.size)
-    , extent(smallest_cell_extent)
-  {}
-
-  template <int dim>
-  bool
-  InternalForces<dim>::evaluate(const Vector &u, const bool with_tangent)
+  std::vector<double>
+  InternalForces<dim>::squares_of_parts(const Vector &,
+                                        const ResidualNorm &norm) const
   {
-    gradients_at_points(u, response.gradients);
-    potential = 0;
-    return response.evaluate(with_tangent, potential);
-  }
-
-  template <int dim>
-  void
-  InternalForces<dim>::add_squares_of_parts(const Vector &,
-                                            const ResidualNorm  &norm,
-                                            std::vector<double> &squares) const
-  {
-    response.add_squares_of_stresses(norm.group_of_body, squares);
+    // Stresses become forces by slopes of at most one over the smallest cell.
+    auto squares = response.squares_of_stresses(norm);
     for (double &square : squares)
       square /= extent * extent;
-  }
-
-  template <int dim>
-  void
-  InternalForces<dim>::add_start_force(Vector &force) const
-  {
-    add_forces_of(response.start_stresses, force);
+    return squares;
   }
 
   template <int dim>
@@ -52,40 +25,6 @@ namespace impm
     gradients_at_points(direction, gradient_changes);
     response.apply_tangent(gradient_changes, stress_changes);
     add_forces_of(stress_changes, image);
-  }
-
-  template <int dim>
-  void
-  InternalForces<dim>::add_diagonal(Vector &diagonal) const
-  {
-    FullMatrix<double> local;
-    for (const auto &patch : prints.patches)
-      {
-        patch_matrix(patch, local);
-        for (unsigned int n = patch.begin_nodes; n < patch.end_nodes; ++n)
-          for (unsigned int c = 0; c < dim; ++c)
-            {
-              const unsigned int i = dim * (n - patch.begin_nodes) + c;
-              diagonal.local_element(dim * prints.patch_nodes[n] + c) +=
-                local(i, i);
-            }
-      }
-  }
-
-  template <int dim>
-  void
-  InternalForces<dim>::add_matrix(const bool   only_pattern,
-                                  const Block &add) const
-  {
-    FullMatrix<double> local;
-    for (const auto &patch : prints.patches)
-      {
-        if (!only_pattern)
-          patch_matrix(patch, local);
-        add(prints.patch_nodes.data() + patch.begin_nodes,
-            prints.patch_nodes.data() + patch.end_nodes,
-            local);
-      }
   }
 
   template <int dim>
@@ -147,6 +86,24 @@ namespace impm
   }
 
   template <int dim>
+  void
+  InternalForces<dim>::place_on_patch(const unsigned int point) const
+  {
+    constexpr unsigned int n_nodes = Footprints<dim>::n_nodes;
+    std::fill(slopes.begin(), slopes.end(), 0.);
+    std::fill(shares.begin(), shares.end(), 0.);
+    for (unsigned int k = prints.first[point]; k < prints.first[point + 1]; ++k)
+      for (unsigned int v = 0; v < n_nodes; ++v)
+        {
+          const unsigned int e = prints.entries[k];
+          const unsigned int m = prints.place[e * n_nodes + v];
+          shares[m] += prints.value(e)[v];
+          for (unsigned int d = 0; d < dim; ++d)
+            slopes[dim * m + d] += prints.gradient(e)[dim * v + d];
+        }
+  }
+
+  template <int dim>
   template <typename Size>
   void
   InternalForces<dim>::add_points(const Patch        &patch,
@@ -169,19 +126,7 @@ namespace impm
             share = prints.value(prints.entries[begin]);
           }
         else
-          {
-            std::fill(slopes.begin(), slopes.end(), 0.);
-            std::fill(shares.begin(), shares.end(), 0.);
-            for (unsigned int k = begin; k < end; ++k)
-              for (unsigned int v = 0; v < n_nodes; ++v)
-                {
-                  const unsigned int e = prints.entries[k];
-                  const unsigned int m = prints.place[e * n_nodes + v];
-                  shares[m] += prints.value(e)[v];
-                  for (unsigned int d = 0; d < dim; ++d)
-                    slopes[dim * m + d] += prints.gradient(e)[dim * v + d];
-                }
-          }
+          place_on_patch(p);
         // rows of A B: one per value of a gradient, one column per unknown
         for (unsigned int m = 0; m < n_patch_nodes; ++m)
           for (unsigned int c = 0; c < dim; ++c)
@@ -222,34 +167,29 @@ namespace impm
     if (!average.includes(first))
       return;
     // F-bar: nodal forces of the mean dilation and of what it does.
-    constexpr unsigned int n_nodes = Footprints<dim>::n_nodes;
-    const unsigned int     n       = matrix.m();
+    const unsigned int     n = matrix.m();
     dealii::Vector<double> dilation(n), answer(n);
     for (unsigned int i = patch.begin_points; i < patch.end_points; ++i)
       {
         const unsigned int p = prints.patch_points[i];
         const double      *m = &average.mean[p * n_gradients];
         const double      *b = &average.coupling[p * n_gradients];
-        for (unsigned int k = prints.first[p]; k < prints.first[p + 1]; ++k)
-          for (unsigned int v = 0; v < n_nodes; ++v)
-            {
-              const unsigned int e     = prints.entries[k];
-              const unsigned int l     = prints.place[e * n_nodes + v];
-              const double      *slope = prints.gradient(e) + dim * v;
-              for (unsigned int c = 0; c < dim; ++c)
-                for (unsigned int d = 0; d < dim; ++d)
-                  {
-                    dilation[dim * l + c] += m[dim * c + d] * slope[d];
-                    answer[dim * l + c] += b[dim * c + d] * slope[d];
-                  }
-              if (axisymmetric)
+        place_on_patch(p);
+        for (unsigned int l = 0; l < shares.size(); ++l)
+          {
+            for (unsigned int c = 0; c < dim; ++c)
+              for (unsigned int d = 0; d < dim; ++d)
                 {
-                  const double share =
-                    prints.value(e)[v] * prints.inverse_radius[p];
-                  dilation[dim * l] += m[dim * dim] * share;
-                  answer[dim * l] += b[dim * dim] * share;
+                  dilation[dim * l + c] += m[dim * c + d] * slopes[dim * l + d];
+                  answer[dim * l + c] += b[dim * c + d] * slopes[dim * l + d];
                 }
-            }
+            if (axisymmetric)
+              {
+                const double share = shares[l] * prints.inverse_radius[p];
+                dilation[dim * l] += m[dim * dim] * share;
+                answer[dim * l] += b[dim * dim] * share;
+              }
+          }
       }
     const double square = average.group_square[average.groups[first]];
     for (unsigned int i = 0; i < n; ++i)
@@ -276,6 +216,22 @@ namespace impm
     else
       add_points(patch, n, matrix);
     add_coupling(patch, matrix);
+  }
+
+  template <int dim>
+  void
+  InternalForces<dim>::add_matrix(const bool       only_pattern,
+                                  const TakeBlock &take) const
+  {
+    FullMatrix<double> block;
+    for (const auto &patch : prints.patches)
+      {
+        if (!only_pattern)
+          patch_matrix(patch, block);
+        take(make_array_view(prints.patch_nodes.begin() + patch.begin_nodes,
+                             prints.patch_nodes.begin() + patch.end_nodes),
+             block);
+      }
   }
 
   template class InternalForces<2>;

@@ -1,5 +1,6 @@
+#include <deal.II/grid/grid_tools.h>
+
 #include <impm/balance/terms/isolated_cells.h>
-#include <impm/grid/cell_neighbors.h>
 
 #include <map>
 
@@ -18,8 +19,8 @@ namespace impm
     label_pieces(const PopulatedCells<dim> &populated,
                  const Discretization<dim> &discretization)
     {
-      std::vector<double> label(
-        discretization.triangulation().n_active_cells());
+      std::vector<double> label(populated.stiffness.size());
+      std::vector<typename Discretization<dim>::CellIterator> neighbors;
       for (const auto &cell : populated.cells)
         label[cell.cell->active_cell_index()] =
           1. + cell.cell->global_active_cell_index();
@@ -27,20 +28,19 @@ namespace impm
         {
           exchange_cell_data(discretization, label);
           changed = false;
-          for (bool again = true; again; changed = changed || again)
+          for (const auto &cell : populated.cells)
             {
-              again = false;
-              for (const auto &cell : populated.cells)
+              double &own = label[cell.cell->active_cell_index()];
+              GridTools::get_active_neighbors<DoFHandler<dim>>(cell.cell,
+                                                               neighbors);
+              for (const auto &neighbor : neighbors)
                 {
-                  double &own = label[cell.cell->active_cell_index()];
-                  for_each_neighbor<dim>(cell.cell, [&](const auto &neighbor) {
-                    const double other = label[neighbor->active_cell_index()];
-                    if (other > 0 && other < own)
-                      {
-                        own   = other;
-                        again = true;
-                      }
-                  });
+                  const double other = label[neighbor->active_cell_index()];
+                  if (other > 0 && other < own)
+                    {
+                      own     = other;
+                      changed = true;
+                    }
                 }
             }
           changed =
@@ -51,11 +51,12 @@ namespace impm
   } // namespace
 
   template <int dim>
-  std::vector<char>
-  find_isolated_cells(const PopulatedCells<dim>  &populated,
-                      const Discretization<dim>  &discretization,
-                      const StepConstraints<dim> &constraints,
-                      const bool                  axisymmetric)
+  IsolatedCells<dim>::IsolatedCells(const MaterialPoints<dim>  &points,
+                                    const Footprints<dim>      &footprints,
+                                    const PopulatedCells<dim>  &populated,
+                                    const Discretization<dim>  &discretization,
+                                    const StepConstraints<dim> &constraints,
+                                    const double                factor)
   {
     const auto label = label_pieces(populated, discretization);
 
@@ -65,11 +66,11 @@ namespace impm
     for (const auto &cell : populated.cells)
       {
         unsigned int &bits = held[label[cell.cell->active_cell_index()]];
-        if (axisymmetric)
+        if (points.layout.geometry == GeometryKind::axisymmetric)
           bits |= 1u;
         for (const unsigned int node : cell.nodes)
           for (unsigned int d = 0; d < dim; ++d)
-            if (constraints.is_prescribed(dim * node + d))
+            if (constraints.carrier[dim * node + d] != constraints.no_carrier)
               bits |= 1u << d;
       }
     for (const auto &others :
@@ -77,23 +78,30 @@ namespace impm
       for (const auto &[piece, bits] : others)
         held[piece] |= bits;
 
-    std::vector<char> isolated(label.size());
-    for (unsigned int i = 0; i < label.size(); ++i)
-      {
-        const auto piece = held.find(label[i]);
-        isolated[i] = piece != held.end() && piece->second != (1u << dim) - 1;
-      }
-    return isolated;
+    const auto is_isolated = [&](const auto &cell) {
+      return held.at(label[cell->active_cell_index()]) != (1u << dim) - 1;
+    };
+    for (const auto &cell : populated.cells)
+      n += is_isolated(cell.cell);
+    n = Utilities::MPI::sum(n, discretization.communicator);
+    discretization.initialize(stiffness);
+    for (const auto &cell : footprints.cells)
+      if (is_isolated(cell.cell))
+        {
+          double sum = 0;
+          for (unsigned int e = cell.begin; e < cell.end; ++e)
+            sum += factor * footprints.weight[e] *
+                   points.initial_volume(footprints.point[e]) *
+                   points.material(footprints.point[e]).stiffness() /
+                   (cell.extent * cell.extent);
+          for (const unsigned int node : cell.nodes)
+            for (unsigned int c = 0; c < dim; ++c)
+              stiffness.local_element(dim * node + c) += sum;
+        }
+    stiffness.compress(VectorOperation::add);
+    discretization.condense_hanging(stiffness);
   }
 
-  template std::vector<char>
-  find_isolated_cells(const PopulatedCells<2> &,
-                      const Discretization<2> &,
-                      const StepConstraints<2> &,
-                      bool);
-  template std::vector<char>
-  find_isolated_cells(const PopulatedCells<3> &,
-                      const Discretization<3> &,
-                      const StepConstraints<3> &,
-                      bool);
+  template struct IsolatedCells<2>;
+  template struct IsolatedCells<3>;
 } // namespace impm

@@ -1,88 +1,190 @@
-#include <impm/balance/terms/face_traction.h>
+#include <deal.II/base/quadrature_lib.h>
+
+#include <deal.II/fe/fe_q.h>
+#include <deal.II/fe/fe_values.h>
+
 #include <impm/balance/terms/loads.h>
-#include <impm/balance/terms/point_traction.h>
+#include <impm/base/exceptions.h>
+
+#include <algorithm>
+#include <numeric>
 
 namespace impm
 {
   using namespace dealii;
 
-  double
-  Loads::energy(const Vector &u) const
-  {
-    double sum = 0;
-    for (unsigned int i = 0; i < at_end.locally_owned_size(); ++i)
-      sum += at_end.local_element(i) * u.local_element(i);
-    return sum;
-  }
-
   namespace
   {
     template <int dim>
     void
-    add_body_force(const LoadsSpec<dim>      &spec,
-                   const MaterialPoints<dim> &points,
-                   const Footprints<dim>     &footprints,
-                   const double               instant,
-                   Vector                    &load)
+    subtract_forces_on_points(const LoadsSpec<dim>      &spec,
+                              const MaterialPoints<dim> &points,
+                              const Footprints<dim>     &footprints,
+                              const double               instant,
+                              Vector                    &load)
     {
-      spec.body_force->set_time(instant);
-      dealii::Vector<double>      value(dim);
       std::vector<Tensor<1, dim>> forces(points.size());
-      unsigned int                p = 0;
-      for (const auto &particle : points.sorted.particles)
+      dealii::Vector<double>      value(dim);
+      // a density, times its amount at every point
+      const auto subtract =
+        [&](auto &density, const bool is_initial, const auto &amount) {
+          density.set_time(instant);
+          unsigned int next = 0;
+          for (const auto &particle : points.sorted.particles)
+            {
+              const unsigned int p = next++;
+              if (amount(p) == 0)
+                continue;
+              density.vector_value(is_initial ? points.initial_position(p) :
+                                                particle.get_location(),
+                                   value);
+              for (unsigned int c = 0; c < dim; ++c)
+                forces[p][c] -= amount(p) * value[c];
+            }
+        };
+      if (spec.body_force)
+        subtract(*spec.body_force,
+                 spec.body_force_is_initial,
+                 [&](const unsigned int p) { return points.mass(p); });
+      for (const auto &traction : spec.tractions)
         {
-          spec.body_force->vector_value(spec.body_force_is_initial ?
-                                          points.initial_position(p) :
-                                          particle.get_location(),
-                                        value);
-          for (unsigned int c = 0; c < dim; ++c)
-            forces[p][c] = -points.mass(p) * value[c];
-          ++p;
+          const auto area = points.layout.offset(traction_field(traction));
+          subtract(*traction.value,
+                   traction.is_initial,
+                   [&](const unsigned int p) {
+                     return points.fields(p)[area];
+                   });
         }
       footprints.spread(forces, load);
+    }
+
+    template <int dim>
+    void
+    subtract_forces_on_faces(const Scene<dim>          &scene,
+                             const BackgroundGrid<dim> &grid,
+                             const PopulatedCells<dim> &populated,
+                             const double               instant,
+                             Vector                    &load)
+    {
+      const FE_Q<dim>        fe(1);
+      FEFaceValues<dim>      values(*grid.mapping,
+                               fe,
+                               QGauss<dim - 1>(3),
+                               update_values | update_quadrature_points |
+                                 update_JxW_values);
+      dealii::Vector<double> traction(dim);
+      for (const auto &[cell, nodes] : populated.cells)
+        for (const unsigned int f : cell->face_indices())
+          {
+            if (!cell->face(f)->at_boundary())
+              continue;
+            const auto &face = scene.faces[cell->face(f)->boundary_id()];
+            if (!face.traction)
+              continue;
+            face.traction->set_time(instant);
+            values.reinit(
+              typename Triangulation<dim>::active_cell_iterator(cell), f);
+            for (const unsigned int q : values.quadrature_point_indices())
+              {
+                const auto &x = values.quadrature_point(q);
+                face.traction->vector_value(x, traction);
+                const double around =
+                  scene.geometry == GeometryKind::axisymmetric ?
+                    2 * numbers::PI * x[0] :
+                    1.;
+                for (unsigned int v = 0; v < nodes.size(); ++v)
+                  for (unsigned int c = 0; c < dim; ++c)
+                    load.local_element(dim * nodes[v] + c) -=
+                      around * values.JxW(q) * values.shape_value(v, q) *
+                      traction[c];
+              }
+          }
+    }
+    template <int dim>
+    bool
+    acts_on_points(const Scene<dim> &scene)
+    {
+      return scene.loads.body_force || !scene.loads.tractions.empty();
+    }
+
+    template <int dim>
+    bool
+    acts_on_faces(const Scene<dim> &scene)
+    {
+      return std::any_of(scene.faces.begin(),
+                         scene.faces.end(),
+                         [](const auto &face) {
+                           return face.traction != nullptr;
+                         });
     }
   } // namespace
 
   template <int dim>
-  Vector
-  gather_loads(const LoadsSpec<dim>      &spec,
-               const Faces<dim>          &faces,
-               const MaterialPoints<dim> &points,
-               const Footprints<dim>     &footprints,
-               const BackgroundGrid<dim> &grid,
-               const Discretization<dim> &discretization,
-               const PopulatedCells<dim> &populated,
-               const double               instant)
+  bool
+  Loads<dim>::exist_in(const Scene<dim> &scene)
   {
-    Vector load;
-    discretization.initialize(load);
-    if (spec.body_force)
-      add_body_force(spec, points, footprints, instant, load);
-    add_point_tractions(spec.tractions, points, footprints, instant, -1., load);
-    if (grid.is_lagrangian)
-      add_face_tractions(
-        faces, points.layout.geometry, grid, populated, instant, -1., load);
-    load.compress(VectorOperation::add);
-    discretization.condense_hanging(load);
-    return load;
+    return acts_on_points(scene) || acts_on_faces(scene);
   }
 
-  template Vector
-  gather_loads(const LoadsSpec<2> &,
-               const Faces<2> &,
-               const MaterialPoints<2> &,
-               const Footprints<2> &,
-               const BackgroundGrid<2> &,
-               const Discretization<2> &,
-               const PopulatedCells<2> &,
-               double);
-  template Vector
-  gather_loads(const LoadsSpec<3> &,
-               const Faces<3> &,
-               const MaterialPoints<3> &,
-               const Footprints<3> &,
-               const BackgroundGrid<3> &,
-               const Discretization<3> &,
-               const PopulatedCells<3> &,
-               double);
+  template <int dim>
+  double
+  Loads<dim>::energy(const Vector &u, const Vector & /*felt*/) const
+  {
+    return std::inner_product(at_end.begin(), at_end.end(), u.begin(), 0.);
+  }
+
+  template <int dim>
+  Loads<dim>::Loads(const Scene<dim>          &scene,
+                    const BackgroundGrid<dim> &grid,
+                    const MaterialPoints<dim> &points,
+                    const Footprints<dim>     &footprints,
+                    const PopulatedCells<dim> &populated,
+                    const Discretization<dim> &discretization,
+                    const double               from,
+                    const double               to)
+  {
+    const auto gather = [&](const double instant, Vector &load) {
+      discretization.initialize(load);
+      if (acts_on_points(scene))
+        subtract_forces_on_points(
+          scene.loads, points, footprints, instant, load);
+      if (acts_on_faces(scene))
+        subtract_forces_on_faces(scene, grid, populated, instant, load);
+      load.compress(VectorOperation::add);
+      discretization.condense_hanging(load);
+    };
+    gather(from, at_start);
+    gather(to, at_end);
+  }
+
+  template <int dim>
+  std::vector<types::particle_index>
+  count_points_under_tractions(const Tractions<dim>      &tractions,
+                               const MaterialPoints<dim> &points)
+  {
+    std::vector<types::particle_index> counts;
+    for (const auto &traction : tractions)
+      {
+        const unsigned int area =
+          points.layout.offset(traction_field(traction));
+        types::particle_index n = 0;
+        for (unsigned int p = 0; p < points.size(); ++p)
+          n += points.fields(p)[area] > 0;
+        counts.push_back(Utilities::MPI::sum(n, points.communicator));
+        if (counts.back() == 0)
+          throw InputError("Loads/" + traction.name + "/Where",
+                           "found no point of body '" + traction.body +
+                             "' where the expression is positive, allowed is "
+                             "one that picks a layer of points: they lie "
+                             "inside the surface, the first half their extent");
+      }
+    return counts;
+  }
+
+  template class Loads<2>;
+  template class Loads<3>;
+  template std::vector<types::particle_index>
+  count_points_under_tractions(const Tractions<2> &, const MaterialPoints<2> &);
+  template std::vector<types::particle_index>
+  count_points_under_tractions(const Tractions<3> &, const MaterialPoints<3> &);
 } // namespace impm

@@ -1,18 +1,10 @@
-#include <deal.II/base/patterns.h>
-
-#include <impm/base/exceptions.h>
-#include <impm/base/names.h>
 #include <impm/input/sections/output.h>
 #include <impm/points/point_fields.h>
 
 #include <algorithm>
-#include <limits>
 
 namespace impm
 {
-  using dealii::ParameterHandler;
-  namespace Patterns = dealii::Patterns;
-
   namespace
   {
     /** Whether a picture, a probe or a reference has photoelastic fringes. */
@@ -28,144 +20,224 @@ namespace impm
              0;
     }
 
+    void
+    add_pictures(const Section &section, OutputSpec &output)
+    {
+      section.add("Pictures",
+                  output.pictures,
+                  true,
+                  "Whether VTU files of points and grid are written.");
+      // Also where pictures are off, so that a study can switch them off.
+      section.add("Time between pictures",
+                  output.picture_interval,
+                  {"0", 0},
+                  "(s); 0: by the number of steps.");
+      if (output.picture_interval == 0)
+        section.add("Steps between pictures",
+                    output.picture_steps,
+                    {"10", 1},
+                    "Number of steps.");
+    }
+
+    void
+    add_point_fields(const Section &section, OutputSpec &output, const int dim)
+    {
+      section.add("Point fields",
+                  output.point_fields,
+                  "Fields of the points; those that this scene does not have "
+                  "are left out.",
+                  "velocity, cauchy_stress, von_mises_stress, "
+                  "equivalent_plastic_strain, deformation_gradient, volume, "
+                  "body");
+      if (!output.pictures)
+        output.point_fields.clear();
+      for (const auto &field : output.point_fields)
+        check_field(section, "Point fields", field, dim);
+      if (shows_fringes(section.chosen))
+        section.add("Fringe number",
+                    output.fringe_number,
+                    {"7", above_zero},
+                    "Of the field photoelastic_fringe: how many fringes there "
+                    "are from no stress to the largest difference of "
+                    "principal stresses.");
+    }
+
+    using Kind = ProbeSpec::Kind;
+
+    /** Over which points of which bodies. */
     template <int dim>
     void
-    check_field(const std::string &field, const std::string &entry)
+    add_region(const Section     &section,
+               ProbeSpec         &probe,
+               const Bodies<dim> &bodies)
     {
-      const auto &known = point_field_names();
-      if (std::count(known.begin(), known.end(), field) == 0)
-        throw InputError(entry,
-                         "found '" + field +
-                           "', allowed are: " + join(known, ", "));
-      require_dimension<dim>(field, entry);
+      section.add("Bodies",
+                  probe.bodies,
+                  "Names of bodies; empty: all deformable ones.");
+      for (const auto &body : probe.bodies)
+        section.require_name("Bodies", body, names_of_bodies(bodies, false));
+      std::shared_ptr<dealii::FunctionParser<dim>> where;
+      section.add("Where",
+                  where,
+                  {1, steady},
+                  "Expression in x, y, z at the start: only points that make "
+                  "it positive count; empty: all.");
+      if (where)
+        probe.where = [where](const double *initial_position) {
+          dealii::Point<dim> place;
+          std::copy_n(initial_position, dim, place.begin_raw());
+          return where->value(place);
+        };
+    }
+
+    template <int dim>
+    void
+    add_mover(const Section     &section,
+              ProbeSpec         &probe,
+              const Faces<dim>  &faces,
+              const Bodies<dim> &bodies)
+    {
+      section.add("Of", probe.of, "A face of the domain or a rigid body.");
+      auto movable = names_of_bodies(bodies, true);
+      for (const auto &face : faces)
+        if (face.moves_grid)
+          movable.insert(movable.begin(), face.name);
+      section.require_name("Of", probe.of, movable);
+    }
+
+    template <int dim>
+    void
+    add_probe(const Section     &section,
+              ProbeSpec         &probe,
+              const Faces<dim>  &faces,
+              const Bodies<dim> &bodies)
+    {
+      probe.name = section.name;
+      section.add(
+        "Kind",
+        probe.kind,
+        {{"point", Kind::point},
+         {"largest", Kind::largest},
+         {"smallest", Kind::smallest},
+         {"spread", Kind::spread},
+         {"mean", Kind::mean},
+         {"extent", Kind::extent},
+         {"motion", Kind::motion}},
+        "point: at the point nearest to a place at the start, from which a "
+        "displacement is carried on to the place by F. Largest, smallest, "
+        "spread (their difference), mean: over bodies. Extent: largest "
+        "coordinate, the points' domains included. Motion: of a moving face or "
+        "a rigid body.");
+      if (probe.kind == Kind::point)
+        probe.position =
+          section.numbers("Position", dim, "Place at the start (m).");
+      else if (probe.kind == Kind::motion)
+        add_mover(section, probe, faces, bodies);
+      else
+        add_region(section, probe, bodies);
+      const bool has_field =
+        probe.kind != Kind::motion && probe.kind != Kind::extent;
+      if (has_field)
+        {
+          section.add("Field",
+                      probe.field,
+                      "A field of the points, as in the pictures.",
+                      "displacement");
+          check_field(section, "Field", probe.field, dim);
+        }
+      section.add("Component",
+                  probe.component,
+                  {"0", 0, 8},
+                  "Of the vector or, by rows, of the 3 x 3 tensor.");
+      if (!has_field && probe.component >= dim)
+        section.refuse("Component",
+                       "allowed is less than " + std::to_string(dim));
+      section.add("Factor", probe.factor, {"1"}, "Multiplies the figure.");
+    }
+
+    template <int dim>
+    void
+    add_reaction(const Section     &section,
+                 ReactionSpec      &reaction,
+                 const Faces<dim>  &faces,
+                 const Bodies<dim> &bodies)
+    {
+      reaction.name = section.name;
+      section.add("On", reaction.on, "A face of the domain or a rigid body.");
+      std::vector<std::string> carriers;
+      for (const auto &face : faces)
+        if (std::count(face.constrained.begin(), face.constrained.end(), true))
+          carriers.push_back(face.name);
+      for (const auto &body : names_of_bodies(bodies, true))
+        carriers.push_back(body);
+      section.require_name("On", reaction.on, carriers);
+      reaction.direction =
+        section.numbers("Direction",
+                        dim,
+                        "The force of the material on it is projected on this "
+                        "vector.");
+      section.add("Factor", reaction.factor, {"1"}, "Multiplies the figure.");
     }
   } // namespace
 
-  void
-  declare_output(ParameterHandler &prm, const ParameterFile::Chosen &chosen)
-  {
-    prm.enter_subsection("Output");
-    declare_text(prm,
-                 "Directory",
-                 "Where results go; empty: output/<name of the file>.");
-    prm.declare_entry("Pictures",
-                      "true",
-                      Patterns::Bool(),
-                      "Whether VTU files of points and grid are written.");
-    // Also where pictures are off, so that a study can switch them off.
-    prm.declare_entry("Time between pictures",
-                      "0",
-                      Patterns::Double(0),
-                      "(s); 0: by the number of steps.");
-    if (Patterns::Double(0, 0).match(
-          chosen("Output/Time between pictures", "0")))
-      prm.declare_entry("Steps between pictures",
-                        "10",
-                        Patterns::Integer(1),
-                        "Number of steps.");
-    prm.declare_entry("Steps between rows",
-                      "1",
-                      Patterns::Integer(1),
-                      "Number of steps from a row of the history, with a "
-                      "line on the screen, to the next; the last step of a "
-                      "run has one in any case. Newton and linear "
-                      "iterations, line searches, step cuts, tangent "
-                      "projections, solver fallbacks and noise stops are "
-                      "sums over the steps since the row before.");
-    prm.declare_entry("Point fields",
-                      "velocity, cauchy_stress, von_mises_stress, "
-                      "equivalent_plastic_strain, deformation_gradient, "
-                      "volume, body",
-                      Patterns::Anything(),
-                      "Fields of the points; those that this scene does "
-                      "not have are left out.");
-    if (shows_fringes(chosen))
-      prm.declare_entry("Fringe number",
-                        "7",
-                        Patterns::Double(std::numeric_limits<double>::min()),
-                        "Of the field photoelastic_fringe: how many fringes "
-                        "there are from no stress to the largest difference "
-                        "of principal stresses.");
-    declare_text(prm,
-                 "Probes",
-                 "Names of columns of the history, each with a "
-                 "subsection.");
-    declare_text(prm,
-                 "Reactions",
-                 "Names of columns of the history, each with a "
-                 "subsection.");
-    for (const auto &name : split_names(chosen("Output/Probes", "")))
-      declare_probe(prm, chosen, name);
-    for (const auto &name : split_names(chosen("Output/Reactions", "")))
-      declare_reaction(prm, name);
-    prm.leave_subsection();
-  }
-
-  template <int dim>
-  OutputSpec
-  read_output(ParameterHandler &prm, const Constants &constants)
-  {
-    OutputSpec output;
-    const bool fringes = shows_fringes(chosen_in(prm));
-    in_section(prm, "Output", [&]() {
-      output.directory = prm.get("Directory");
-      output.pictures  = prm.get_bool("Pictures");
-      if (output.pictures)
-        {
-          output.picture_interval = prm.get_double("Time between pictures");
-          if (output.picture_interval == 0)
-            output.picture_steps = prm.get_integer("Steps between pictures");
-          output.point_fields = split_names(prm.get("Point fields"));
-        }
-      output.row_steps = prm.get_integer("Steps between rows");
-      if (fringes)
-        output.fringe_number = prm.get_double("Fringe number");
-      for (const auto &name : split_names(prm.get("Probes")))
-        output.probes.push_back(read_probe<dim>(prm, name, constants));
-      for (const auto &name : split_names(prm.get("Reactions")))
-        output.reactions.push_back(read_reaction<dim>(prm, name));
-    });
-    return output;
-  }
-
   template <int dim>
   void
-  check_output(const OutputSpec  &output,
-               const Faces<dim>  &faces,
-               const Bodies<dim> &bodies)
+  add_output(const Section     &top,
+             OutputSpec        &output,
+             const Faces<dim>  &faces,
+             const Bodies<dim> &bodies)
   {
-    for (const auto &reaction : output.reactions)
-      check_reaction(reaction, faces, bodies);
-    for (const auto &field : output.point_fields)
-      check_field<dim>(field, "Output/Point fields");
-    for (const auto &probe : output.probes)
-      {
-        if (!probe.field.empty())
-          check_field<dim>(probe.field, "Output/" + probe.name + "/Field");
-        check_probe(probe, faces, bodies);
-      }
+    const auto section = top.subsection("Output");
+    section.add("Directory",
+                output.directory,
+                "Where results go; empty: output/<name of the file>.");
+    add_pictures(section, output);
+    section.add("Steps between rows",
+                output.row_steps,
+                {"1", 1},
+                "Number of steps from a row of the history, with a line on "
+                "the screen, to the next; the last step of a run has one in "
+                "any case. Newton and linear iterations, line searches, step "
+                "cuts, tangent projections, solver fallbacks and noise stops "
+                "are sums over the steps since the row before.");
+    add_point_fields(section, output, dim);
+    const std::string what =
+      "Names of columns of the history, each with a subsection.";
+    const auto probes    = section.names("Probes", what);
+    const auto reactions = section.names("Reactions", what);
+    for (const auto &name : probes)
+      add_probe(section.subsection(name),
+                output.probes.emplace_back(),
+                faces,
+                bodies);
+    for (const auto &name : reactions)
+      add_reaction(section.subsection(name),
+                   output.reactions.emplace_back(),
+                   faces,
+                   bodies);
   }
 
-  template <int dim>
   void
-  require_dimension(const std::string &field, const std::string &entry)
+  check_field(const Section     &section,
+              const std::string &entry,
+              const std::string &field,
+              const int          dim)
   {
+    section.require_name(entry, field, point_field_names());
     if (dim == 3 && is_plane_field(field))
-      throw InputError(entry,
-                       "found '" + field +
-                         "', a field of the plane, which 3D does not have");
+      section.fail(entry,
+                   "found '" + field +
+                     "', a field of the plane, which 3D does not have");
   }
 
-  template OutputSpec
-  read_output<2>(ParameterHandler &, const Constants &);
-  template OutputSpec
-  read_output<3>(ParameterHandler &, const Constants &);
   template void
-  check_output(const OutputSpec &, const Faces<2> &, const Bodies<2> &);
+  add_output(const Section &,
+             OutputSpec &,
+             const Faces<2> &,
+             const Bodies<2> &);
   template void
-  check_output(const OutputSpec &, const Faces<3> &, const Bodies<3> &);
-  template void
-  require_dimension<2>(const std::string &, const std::string &);
-  template void
-  require_dimension<3>(const std::string &, const std::string &);
+  add_output(const Section &,
+             OutputSpec &,
+             const Faces<3> &,
+             const Bodies<3> &);
 } // namespace impm

@@ -1,150 +1,84 @@
 #include <deal.II/base/utilities.h>
 
-#include <impm/base/csv.h>
 #include <impm/base/exceptions.h>
-#include <impm/input/choice.h>
-#include <impm/input/expressions.h>
+#include <impm/base/files.h>
 #include <impm/input/sections/output.h>
 #include <impm/input/sections/reference.h>
+#include <impm/points/point_fields.h>
 
 #include <filesystem>
-#include <set>
 #include <sstream>
 
 namespace impm
 {
-  using dealii::ParameterHandler;
-  namespace Patterns = dealii::Patterns;
+  using dealii::Utilities::split_string_list;
 
   namespace
   {
-    const Choice<ReferenceKind>
-      kinds("Kind",
-            {{"field", ReferenceKind::field},
-             {"probe", ReferenceKind::probe},
-             {"curve", ReferenceKind::curve},
-             {"finer run", ReferenceKind::finer_run}});
-
     const Choice<Norm>
       norms("Norm", {{"L1", Norm::L1}, {"L2", Norm::L2}, {"max", Norm::max}});
 
-    const Choice<bool> takes_largest("When",
-                                     {{"end", false}, {"largest", true}});
-
-    void
-    require(const ParameterHandler &prm,
-            const std::string      &entry,
-            const std::string      &allowed)
-    {
-      if (prm.get(entry).empty())
-        throw InputError(entry, "found '', allowed " + allowed);
-    }
-
-    void
-    declare_field(ParameterHandler &prm)
-    {
-      prm.declare_entry("Field",
-                        "displacement",
-                        Patterns::Anything(),
-                        "A field of the points, as in the pictures.");
-      prm.declare_entry("Components",
-                        "",
-                        Patterns::List(Patterns::Integer(0, 8)),
-                        "Of the vector or, by rows, of the 3 x 3 tensor; "
-                        "empty: all, of a vector those of the grid.");
-      declare_text(prm,
-                   "Expression",
-                   "What the components should be: expressions in t and "
-                   "the initial x, y, z of a point, between semicolons.");
-      declare_text(prm,
-                   "Bodies",
-                   "Names of bodies; empty: all deformable ones.");
-      takes_largest.declare(
-        prm,
-        "At the end of the run, or the largest in any row of "
-        "the history.");
-    }
-
     template <int dim>
     void
-    read_field(const ParameterHandler &prm,
-               const Constants        &constants,
-               ReferenceSpec<dim>     &spec)
+    add_field(const Section &section, ReferenceSpec<dim> &spec)
     {
-      require(prm, "Expression", "are expressions between semicolons");
-      spec.field = prm.get("Field");
-      for (const auto &component : split_names(prm.get("Components")))
+      section.add("Field",
+                  spec.field,
+                  "A field of the points, as in the pictures.",
+                  "displacement");
+      if (is_plane_field(spec.field))
+        check_field(section, "Field", spec.field, dim);
+      const auto components =
+        section.text("Components",
+                     "",
+                     Patterns::List(Patterns::Integer(0, 8)),
+                     "Of the vector or, by rows, of the 3 x 3 tensor; empty: "
+                     "all, of a vector those of the grid.");
+      for (const auto &component : split_names(components))
         spec.components.push_back(dealii::Utilities::string_to_int(component));
-      const unsigned int n_expressions =
-        dealii::Utilities::split_string_list(prm.get("Expression"), ';').size();
-      spec.expressions =
-        read_expressions<dim>(prm,
-                              "Expression",
-                              spec.components.empty() ? n_expressions :
-                                                        spec.components.size(),
-                              true,
-                              constants);
-      spec.bodies  = split_names(prm.get("Bodies"));
-      spec.largest = takes_largest.read(prm);
-    }
-
-    void
-    declare_probe(ParameterHandler &prm)
-    {
-      declare_text(prm,
-                   "Of",
-                   "A probe, a reaction, or any other column of the "
-                   "history.");
-      declare_text(prm, "Value", "What it should be: an expression in t.");
-      declare_text(prm,
-                   "Time",
-                   "When (s), linear between steps; empty: at the end "
-                   "of the run.");
+      section.require("Expression", "are expressions between semicolons");
+      const unsigned int n_components =
+        spec.components.empty() ?
+          split_string_list(section.get("Expression"), ';').size() :
+          spec.components.size();
+      section.add("Expression",
+                  spec.expressions,
+                  {n_components, in_time},
+                  "What the components should be: expressions in t and the "
+                  "initial x, y, z of a point, between semicolons.");
+      section.add("Bodies",
+                  spec.bodies,
+                  "Names of bodies; empty: all deformable ones.");
+      section.add("When",
+                  spec.largest,
+                  {{"end", false}, {"largest", true}},
+                  "At the end of the run, or the largest in any row of the "
+                  "history.");
     }
 
     template <int dim>
     void
-    read_probe(const ParameterHandler &prm,
-               const Constants        &constants,
-               ReferenceSpec<dim>     &spec)
+    add_probe(const Section &section, ReferenceSpec<dim> &spec)
     {
-      require(prm, "Value", "is an expression in t");
-      spec.columns = {prm.get("Of")};
-      spec.value   = read_expressions<1>(prm, "Value", 1, true, constants);
-      if (!prm.get("Time").empty())
-        spec.time = get_numbers(prm, "Time", 1)[0];
-    }
-
-    void
-    declare_curve(ParameterHandler &prm)
-    {
-      declare_text(prm, "Column", "Of the history.");
-      declare_text(prm,
-                   "File",
-                   "CSV file of the curve with a header line: columns "
-                   "called as 'Against' and 'Column', or just two.");
-      declare_text(prm,
-                   "Points",
-                   "The curve in place of a file: 'x1 y1; x2 y2'.");
-      declare_text(prm,
-                   "Expression",
-                   "The curve in place of a file: an expression in t, "
-                   "which here stands for the abscissa.");
-    }
-
-    std::string
-    existing_file(const std::string &file, const std::string &parameter_file)
-    {
-      const auto beside =
-        std::filesystem::path(parameter_file).parent_path() / file;
-      return std::filesystem::exists(beside) ? beside.string() : file;
+      section.add("Of",
+                  spec.columns.emplace_back(),
+                  "A probe, a reaction, or any other column of the history.");
+      section.add("Value",
+                  spec.value,
+                  {1, in_time},
+                  "What it should be: an expression in t.");
+      section.require("Value", "is an expression in t");
+      section.add("Time",
+                  spec.time,
+                  "When (s), linear between steps; empty: at the end of the "
+                  "run.");
     }
 
     Curve
     read_points(const std::string &text)
     {
       Curve curve;
-      for (const auto &pair : dealii::Utilities::split_string_list(text, ';'))
+      for (const auto &pair : split_string_list(text, ';'))
         {
           std::istringstream numbers(pair);
           double             x, y;
@@ -183,155 +117,144 @@ namespace impm
 
     template <int dim>
     void
-    read_curve(ParameterHandler   &prm,
-               const Constants    &constants,
-               const std::string  &parameter_file,
-               ReferenceSpec<dim> &spec)
+    add_curve(const Section &section, ReferenceSpec<dim> &spec)
     {
-      spec.columns = {prm.get("Column")};
+      std::string text;
+      section.add("Column", spec.columns.emplace_back(), "Of the history.");
+      section.add("File",
+                  text,
+                  "CSV file of the curve with a header line: columns called "
+                  "as 'Against' and 'Column', or just two.");
+      section.add("Points",
+                  text,
+                  "The curve in place of a file: 'x1 y1; x2 y2'.");
+      section.add("Expression",
+                  spec.value,
+                  {1, in_time},
+                  "The curve in place of a file: an expression in t, which "
+                  "here stands for the abscissa.");
       std::vector<std::string> given;
       for (const std::string entry : {"File", "Points", "Expression"})
-        if (!prm.get(entry).empty())
+        if (!section.get(entry).empty())
           given.push_back(entry);
       if (given.size() != 1)
-        throw InputError(given.empty() ? "File" : given.back(),
-                         std::string("found ") +
-                           (given.empty() ? "none" : "more than one") +
-                           " of File, Points, Expression, allowed is exactly "
-                           "one");
-      if (given[0] == "Expression")
-        {
-          spec.value =
-            read_expressions<1>(prm, "Expression", 1, true, constants);
-          return;
-        }
-      if (given[0] == "File")
-        {
-          // So that the resolved parameters find it from here, too.
-          prm.set("File", existing_file(prm.get("File"), parameter_file));
-          spec.curve =
-            read_file(prm.get("File"), spec.against, spec.columns.front());
-        }
-      else
-        spec.curve = read_points(prm.get("Points"));
-      const auto curve = make_curve(spec.curve.x, spec.curve.y);
+        section.fail(given.empty() ? "File" : given.back(),
+                     std::string("found ") +
+                       (given.empty() ? "none" : "more than one") +
+                       " of File, Points, Expression, allowed is exactly one");
+    }
+
+    /** Unless it is an expression. */
+    template <int dim>
+    void
+    read_curve(dealii::ParameterHandler &prm,
+               const std::string        &parameter_file,
+               ReferenceSpec<dim>       &spec)
+    {
+      const bool from_file = !prm.get("File").empty();
+      const auto beside =
+        std::filesystem::path(parameter_file).parent_path() / prm.get("File");
+      // So that the resolved parameters find it from here, too.
+      if (from_file && std::filesystem::exists(beside))
+        prm.set("File", beside.string());
+      const auto points =
+        from_file ?
+          read_file(prm.get("File"), spec.against, spec.columns.front()) :
+          read_points(prm.get("Points"));
+      const auto curve = make_curve(points.x, points.y);
       if (!curve || curve->x.empty())
-        throw InputError(given[0],
-                         "found " +
-                           std::string(curve ? "no points" :
-                                               "an abscissa that rises and "
-                                               "falls") +
+        throw InputError(from_file ? "File" : "Points",
+                         std::string("found ") +
+                           (curve ? "no points" :
+                                    "an abscissa that rises and falls") +
                            ", allowed is a curve along its abscissa");
       spec.curve = *curve;
     }
 
-    void
-    declare_finer_run(ParameterHandler &prm)
-    {
-      declare_text(prm,
-                   "Overrides",
-                   "What is different in the finer run: "
-                   "'Section/Name=value | Section/Name=value'.");
-      declare_text(prm, "Columns", "Of the history.");
-      declare_text(prm,
-                   "Directory",
-                   "Of the finer run, which is not made again if it is "
-                   "there; empty: reference_<name> in that of this run.");
-    }
-
     template <int dim>
     void
-    read_finer_run(const ParameterHandler &prm, ReferenceSpec<dim> &spec)
+    add_finer_run(const Section &section, ReferenceSpec<dim> &spec)
     {
-      require(prm, "Overrides", "are 'Section/Name=value' between bars");
-      require(prm, "Columns", "are names of columns of the history");
-      for (const auto &override :
-           dealii::Utilities::split_string_list(prm.get("Overrides"), '|'))
-        spec.overrides.push_back(override);
-      spec.columns   = split_names(prm.get("Columns"));
-      spec.directory = prm.get("Directory");
+      std::string overrides;
+      section.add("Overrides",
+                  overrides,
+                  "What is different in the finer run: "
+                  "'Section/Name=value | Section/Name=value'.");
+      section.require("Overrides", "are 'Section/Name=value' between bars");
+      spec.overrides = split_string_list(overrides, '|');
+      section.add("Columns", spec.columns, "Of the history.");
+      section.require("Columns", "are names of columns of the history");
+      section.add("Directory",
+                  spec.directory,
+                  "Of the finer run, which is not made again if it is there; "
+                  "empty: reference_<name> in that of this run.");
     }
 
-    std::optional<double>
-    read_scale(const ParameterHandler &prm, const Constants &constants)
+    void
+    add_scale(const Section &section, std::optional<double> &scale)
     {
-      if (prm.get("Scale") == "reference")
-        return std::nullopt;
-      const auto scale = read_expressions<1>(prm, "Scale", 1, true, constants);
-      const auto at    = [&](const double t) {
-        return scale ? scale->value(dealii::Point<1>(t)) : 0.;
+      const auto text = section.text(
+        "Scale",
+        "1",
+        Patterns::Anything(),
+        "The error is divided by this number, or by the norm of the "
+        "reference if this is 'reference'.");
+      if (text == "reference" || !section.is_read)
+        return;
+      std::shared_ptr<dealii::FunctionParser<1>> function;
+      section.inside([&](const auto &prm) {
+        function =
+          read_expressions<1>(prm, "Scale", 1, true, section.constants);
+      });
+      const auto at = [&](const double t) {
+        return function ? function->value(dealii::Point<1>(t)) : 0.;
       };
       if (!(at(0) > 0) || at(0) != at(1))
-        throw InputError("Scale",
-                         "found '" + prm.get("Scale") +
-                           "', allowed is 'reference' or a number greater "
-                           "than 0, also as an expression of constants");
-      return at(0);
-    }
-
-    void
-    declare_reference(ParameterHandler            &prm,
-                      const ParameterFile::Chosen &chosen,
-                      const std::string           &section)
-    {
-      kinds.declare(prm,
-                    "A field at the points, a figure of the history at "
-                    "one time, a column of the history, or columns of a "
-                    "finer run of the same scene.");
-      const auto is = [&](const ReferenceKind kind) {
-        return kinds.is(chosen, section, kind);
-      };
-      if (is(ReferenceKind::field))
-        declare_field(prm);
-      else if (is(ReferenceKind::probe))
-        declare_probe(prm);
-      else if (is(ReferenceKind::curve))
-        declare_curve(prm);
-      else
-        declare_finer_run(prm);
-      if (is(ReferenceKind::curve) || is(ReferenceKind::finer_run))
-        prm.declare_entry("Against",
-                          "time",
-                          Patterns::Anything(),
-                          "The column of the history that is the abscissa.");
-      if (!is(ReferenceKind::probe))
-        norms.declare(prm,
-                      "Of the error: mean, root mean square, largest; "
-                      "weighted by initial volume or along the "
-                      "abscissa.");
-      prm.declare_entry("Scale",
-                        "1",
-                        Patterns::Anything(),
-                        "The error is divided by this number, or by the "
-                        "norm of the reference if this is 'reference'.");
+        section.refuse("Scale",
+                       "allowed is 'reference' or a number greater than 0, "
+                       "also as an expression of constants");
+      scale = at(0);
     }
 
     template <int dim>
-    ReferenceSpec<dim>
-    read_reference(ParameterHandler  &prm,
-                   const std::string &name,
-                   const Constants   &constants,
-                   const std::string &parameter_file)
+    void
+    add_reference(const Section      &section,
+                  ReferenceSpec<dim> &spec,
+                  const std::string  &parameter_file)
     {
-      ReferenceSpec<dim> spec;
-      spec.name  = name;
-      spec.kind  = kinds.read(prm);
-      spec.scale = read_scale(prm, constants);
-      if (spec.kind != ReferenceKind::probe)
-        spec.norm = norms.read(prm);
-      spec.against = "time";
+      spec.name = section.name;
+      section.add("Kind",
+                  spec.kind,
+                  {{"field", ReferenceKind::field},
+                   {"probe", ReferenceKind::probe},
+                   {"curve", ReferenceKind::curve},
+                   {"finer run", ReferenceKind::finer_run}},
+                  "A field at the points, a figure of the history at one time, "
+                  "a column of the history, or columns of a finer run of the "
+                  "same scene.");
+      if (spec.kind == ReferenceKind::field)
+        add_field(section, spec);
+      else if (spec.kind == ReferenceKind::probe)
+        add_probe(section, spec);
+      else if (spec.kind == ReferenceKind::curve)
+        add_curve(section, spec);
+      else
+        add_finer_run(section, spec);
       if (spec.kind == ReferenceKind::curve ||
           spec.kind == ReferenceKind::finer_run)
-        spec.against = prm.get("Against");
-      if (spec.kind == ReferenceKind::field)
-        read_field(prm, constants, spec);
-      else if (spec.kind == ReferenceKind::probe)
-        read_probe(prm, constants, spec);
-      else if (spec.kind == ReferenceKind::curve)
-        read_curve(prm, constants, parameter_file, spec);
-      else
-        read_finer_run(prm, spec);
-      return spec;
+        section.add("Against",
+                    spec.against,
+                    "The column of the history that is the abscissa.",
+                    "time");
+      if (section.is_read && spec.kind == ReferenceKind::curve && !spec.value)
+        section.inside(
+          [&](auto &prm) { read_curve(prm, parameter_file, spec); });
+      if (spec.kind != ReferenceKind::probe)
+        section.add(norms,
+                    spec.norm,
+                    "Of the error: mean, root mean square, largest; weighted "
+                    "by initial volume or along the abscissa.");
+      add_scale(section, spec.scale);
     }
   } // namespace
 
@@ -341,58 +264,28 @@ namespace impm
     return norms.name_of(norm);
   }
 
-  void
-  declare_references(ParameterHandler &prm, const ParameterFile::Chosen &chosen)
-  {
-    prm.enter_subsection("Reference");
-    declare_text(prm,
-                 "Names",
-                 "Names of what the scene should give, each with a "
-                 "subsection; the errors stand in summary.json.");
-    for (const auto &name : split_names(chosen("Reference/Names", "")))
-      in_section(prm, name, [&]() {
-        declare_reference(prm, chosen, "Reference/" + name);
-      });
-    prm.leave_subsection();
-  }
-
-  template <int dim>
-  std::vector<ReferenceSpec<dim>>
-  read_references(ParameterHandler  &prm,
-                  const Constants   &constants,
-                  const std::string &parameter_file)
-  {
-    std::vector<ReferenceSpec<dim>> references;
-    in_section(prm, "Reference", [&]() {
-      std::set<std::string> taken;
-      for (const auto &name : split_names(prm.get("Names")))
-        {
-          if (!taken.insert(name).second)
-            throw InputError("Names", "found '" + name + "' twice");
-          in_section(prm, name, [&]() {
-            references.push_back(
-              read_reference<dim>(prm, name, constants, parameter_file));
-          });
-        }
-    });
-    return references;
-  }
-
   template <int dim>
   void
-  check_references(const std::vector<ReferenceSpec<dim>> &references)
+  add_references(const Section                   &top,
+                 std::vector<ReferenceSpec<dim>> &references,
+                 const std::string               &parameter_file)
   {
-    for (const auto &reference : references)
-      require_dimension<dim>(reference.field,
-                             "Reference/" + reference.name + "/Field");
+    const auto section = top.subsection("Reference");
+    for (const auto &name :
+         section.names("Names",
+                       "Names of what the scene should give, each with a "
+                       "subsection; the errors stand in summary.json."))
+      add_reference(section.subsection(name),
+                    references.emplace_back(),
+                    parameter_file);
   }
 
-  template std::vector<ReferenceSpec<2>>
-  read_references(ParameterHandler &, const Constants &, const std::string &);
-  template std::vector<ReferenceSpec<3>>
-  read_references(ParameterHandler &, const Constants &, const std::string &);
   template void
-  check_references(const std::vector<ReferenceSpec<2>> &);
+  add_references(const Section &,
+                 std::vector<ReferenceSpec<2>> &,
+                 const std::string &);
   template void
-  check_references(const std::vector<ReferenceSpec<3>> &);
+  add_references(const Section &,
+                 std::vector<ReferenceSpec<3>> &,
+                 const std::string &);
 } // namespace impm

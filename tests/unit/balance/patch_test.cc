@@ -256,7 +256,7 @@ namespace
                                   model.scene.geometry,
                                   0.03);
     EXPECT_GT(Utilities::MPI::sum(ghost.faces.size(), MPI_COMM_WORLD), 0u);
-    EXPECT_NEAR(ghost.energy(u), 0., 1e-16);
+    EXPECT_NEAR(ghost.energy(u, u), 0., 1e-16);
 
     // No stress, or the old one turned.
     const auto field = make_point_field<dim>("cauchy_stress", model.points);
@@ -383,7 +383,7 @@ TEST(PatchMpi, LinearFieldsHaveTheirGradient)
       model.scene.geometry,
       1.);
     EXPECT_GT(Utilities::MPI::sum(ghost.faces.size(), MPI_COMM_WORLD), 0u);
-    EXPECT_NEAR(ghost.energy(u), 0., 1e-16);
+    EXPECT_NEAR(ghost.energy(u, u), 0., 1e-16);
   };
   for (const std::string method : {"MPM", "GIMP"})
     {

@@ -60,7 +60,7 @@ namespace
     for (unsigned int i = 0;
          i < model.problem->motion.mass.locally_owned_size();
          ++i)
-      if (model.grid.discretization()->hanging_nodes().is_constrained(
+      if (model.grid.discretization()->numbering->hanging_nodes.is_constrained(
             model.problem->motion.mass.get_partitioner()->local_to_global(i)))
         EXPECT_EQ(model.problem->motion.mass.local_element(i), 0.);
   }

@@ -116,7 +116,7 @@ check_folding(const std::string &kind,
       const double start = model.time;
       model.commit(u);
       model.rigid.move(start, model.time);
-      const auto   shift = model.rigid.displacement(0, 0, model.time);
+      const auto   shift = model.rigid.bodies[0].displacement(0, model.time);
       const double face  = 1 + shift[dim - 1];
       for (const auto &place : model.grid.discretization()->node_positions)
         EXPECT_LT(place[dim - 1], face + 2 * tolerance);
@@ -125,7 +125,7 @@ check_folding(const std::string &kind,
   // More than the upper side is held now.
   unsigned int held = 0, held_at_start = dim == 2 ? 9 : 18;
   for (unsigned int i = 0; i < u.locally_owned_size(); i += dim)
-    held += model.rigid.holders_of_nodes()[i / dim] > 0;
+    held += model.rigid.holders_of_nodes[i / dim] > 0;
   held = dealii::Utilities::MPI::sum(held, MPI_COMM_WORLD);
   EXPECT_GT(held, held_at_start);
 }

@@ -194,6 +194,9 @@ TEST(Scene, ValuesThatCannotBe)
   expect_blame({"Geometry/Kind=axisymmetric", "Grid/Lower corner=-1, 0"},
                "Grid/Lower corner",
                {"radius"});
+  expect_blame({"Grid/Local refinements=1", "Grid/Refine where="},
+               "Grid/Refine where",
+               {"found ''", "expression"});
   // outside what the pattern of the entry allows: with the line
   expect_blame({"Grid/Cells=0, 4"}, "", {"Cells"});
   expect_blame({"Grid/Refine where=x"}, "", {"Refine where"}); // unrefined

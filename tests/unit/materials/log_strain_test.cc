@@ -18,9 +18,9 @@ namespace
   using namespace dealii;
   using namespace impm;
 
-  const HenckyElasticity elasticity(1., 0.3);
+  const auto elasticity = ElasticConstants::from_young(1., 0.3);
 
-  const LogStrainElastic law({1000.}, elasticity);
+  const LogStrainElastic law({1000.}, no_history, elasticity);
 
   Material::Response
   respond(const Tensor<2, 3> &total)
@@ -239,7 +239,7 @@ TEST(LogStrain, EntriesOfTheElasticLaw)
   ASSERT_NE(entry, list.end());
 
   ParameterHandler prm;
-  entry->declare(prm);
+  entry->declare(prm, chosen_in(prm));
   for (const std::string bad : {"0.5", "-1", "0.7", "nan"})
     EXPECT_THROW(prm.set("Poisson's ratio", bad),
                  ParameterHandler::ExcValueDoesNotMatchPattern)

@@ -22,7 +22,9 @@ namespace
     static Material::Response
     respond(const Tensor<2, 3> &F, const double poisson = 0.3)
     {
-      const Law          law({1000.}, ElasticConstants(1., poisson));
+      const Law          law({1000.},
+                    no_history,
+                    ElasticConstants::from_young(1., poisson));
       Material::Response response;
       EXPECT_TRUE(
         law.evaluate_one({F, F, 0., nullptr, nullptr}, true, response));
@@ -33,13 +35,13 @@ namespace
     static bool
     is_refused(const Tensor<2, 3> &F)
     {
-      const Law          law({1000.}, ElasticConstants(1., 0.3));
+      const Law law({1000.}, no_history, ElasticConstants::from_young(1., 0.3));
       Material::Response response;
       return !law.evaluate_one({F, F, 0., nullptr, nullptr}, true, response);
     }
   };
 
-  using Laws = testing::Types<CoupledNeoHookean, DecoupledNeoHookean>;
+  using Laws = testing::Types<NeoHookean<false>, NeoHookean<true>>;
   TYPED_TEST_SUITE(NeoHookeanLaws, Laws);
 } // namespace
 
@@ -121,9 +123,9 @@ TYPED_TEST(NeoHookeanLaws, SmallStrainsAreLinear)
 {
   for (const double poisson : {-0.5, 0., 0.3, 0.4999})
     {
-      const ElasticConstants constants(1., poisson);
-      const auto             unit = unit_symmetric_tensor<3>();
-      const auto             c = constants.lame() * outer_product(unit, unit) +
+      const auto constants = ElasticConstants::from_young(1., poisson);
+      const auto unit      = unit_symmetric_tensor<3>();
+      const auto c         = constants.lame() * outer_product(unit, unit) +
                      2. * constants.shear * identity_tensor<3>();
       const auto at_rest = this->respond(unit, poisson);
       EXPECT_EQ(at_rest.kirchhoff_stress.norm(), 0.);
@@ -177,7 +179,7 @@ TEST(NeoHookean, FiguresByHand)
   const auto              F         = diagonal(2., 1., 1.);
   const double            log_J     = std::log(2.);
   Material::Response      response;
-  const CoupledNeoHookean coupled({1.}, constants);
+  const NeoHookean<false> coupled({1.}, no_history, constants);
   ASSERT_TRUE(
     coupled.evaluate_one({F, F, 0., nullptr, nullptr}, false, response));
   EXPECT_NEAR(response.kirchhoff_stress[0][0], 3 * mu + lame * log_J, 1e-14);
@@ -186,8 +188,8 @@ TEST(NeoHookean, FiguresByHand)
               mu / 2 * (3 - 2 * log_J) + lame / 2 * log_J * log_J,
               1e-14);
 
-  const double              shrink = std::pow(2., -2. / 3.);
-  const DecoupledNeoHookean decoupled({1.}, constants);
+  const double           shrink = std::pow(2., -2. / 3.);
+  const NeoHookean<true> decoupled({1.}, no_history, constants);
   ASSERT_TRUE(
     decoupled.evaluate_one({F, F, 0., nullptr, nullptr}, false, response));
   EXPECT_NEAR(response.kirchhoff_stress[0][0],

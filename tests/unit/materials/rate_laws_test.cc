@@ -31,10 +31,10 @@ namespace
     const auto form = point.law.form();
     const auto inverse =
       form == Material::Form::linearized ? one : invert(increment);
-    kinematics.carry_back_stress(point.response.kirchhoff_stress,
-                                 inverse,
-                                 1.,
-                                 stress.data());
+    kinematics.carry_back(kinematics.list(point.response.kirchhoff_stress),
+                          inverse,
+                          1.,
+                          stress.data());
     kinematics.spatial_tangent(point.response, form, spatial.data());
     kinematics.carry_back_tangent(spatial.data(), inverse, 1., result.data());
     Carried carried;
@@ -288,7 +288,7 @@ TEST(JaumannLaw, SimpleShear)
 TEST(LinearLaw, UniaxialTensionByHand)
 {
   const double            sigma_y = 0.02, c_1 = 0.1, limit = 0.05, c_2 = 0.15;
-  const BilinearHardening hardening(sigma_y, c_1, limit, c_2);
+  const BilinearHardening hardening({sigma_y, c_1}, limit, c_2);
   const auto              law =
     make_law<LinearLaw>("", GeometryKind::three_d, unit_elasticity, hardening);
   // alpha, H(alpha)
@@ -330,7 +330,7 @@ TEST(NewtonianFluid, ShearAndCompression)
 {
   const double K = 7., mu = 0.3, lambda = 0.2, dt = 0.01;
   PointLayout  history(GeometryKind::three_d);
-  EXPECT_EQ(NewtonianFluid({2.}, history, K, mu, lambda).wave_speed(),
+  EXPECT_EQ(NewtonianFluid({2.}, history, {K, mu, lambda}).wave_speed(),
             std::sqrt(K / 2));
   const auto fluid = fluid_law(K, mu, lambda);
   LawPoint   point(fluid, dt);

@@ -22,7 +22,7 @@ namespace
   const double poisson = 0.3;
   const double sigma_y = 0.02;
 
-  const HenckyElasticity elasticity(young, poisson);
+  const auto elasticity = ElasticConstants::from_young(young, poisson);
 
   const Tensor<2, 3> unit = unit_symmetric_tensor<3>();
 
@@ -32,7 +32,7 @@ namespace
     explicit PointState(const double       hardening,
                         const GeometryKind geometry = GeometryKind::three_d)
       : layout(geometry)
-      , law({1000.}, layout, elasticity, sigma_y, hardening)
+      , law({1000.}, layout, elasticity, {sigma_y, hardening})
       , history(layout.size())
     {
       law.initialize_history(history.data());
@@ -438,7 +438,7 @@ TEST(VonMises, Entries)
   ASSERT_NE(entry, list.end());
 
   ParameterHandler prm;
-  entry->declare(prm);
+  entry->declare(prm, chosen_in(prm));
   for (const std::string bad : {"0", "-1"})
     EXPECT_THROW(prm.set("Yield stress", bad),
                  ParameterHandler::ExcValueDoesNotMatchPattern);

@@ -242,11 +242,11 @@ TEST(MaterialPoints, CarryOnlyWhatTheSceneNeeds)
   EXPECT_EQ(choose_layout(scene_from<3>(block_scene("3D"))).size(), 2 + 9u);
 
   const auto moving = choose("plane strain", with_inertia);
-  EXPECT_TRUE(moving.has("velocity"));
+  EXPECT_TRUE(moving.find("velocity"));
   EXPECT_EQ(moving.size(), 6 + 2u);
 
   const auto flowing = choose("plane strain", plastic);
-  EXPECT_FALSE(flowing.has("velocity"));
+  EXPECT_FALSE(flowing.find("velocity"));
   EXPECT_EQ(flowing.size(), 6 + 5u);
   // the history behind all the rest
   EXPECT_GE(flowing.offset("elastic_left_cauchy_green"), 6u);
@@ -260,11 +260,11 @@ TEST(MaterialPoints, CarryOnlyWhatTheSceneNeeds)
             names_of(flowing));
 
   const Overrides probe = {"Output/Probes=p", "Output/p/Position=0, 0"};
-  EXPECT_TRUE(choose("plane strain", probe).has("initial_position"));
-  EXPECT_FALSE(choose("plane strain", probe).has("initial_domain"));
+  EXPECT_TRUE(choose("plane strain", probe).find("initial_position"));
+  EXPECT_FALSE(choose("plane strain", probe).find("initial_domain"));
   const Overrides extent = {"Output/Probes=p", "Output/p/Kind=extent"};
-  EXPECT_FALSE(choose("plane strain", extent).has("initial_position"));
-  EXPECT_TRUE(choose("plane strain", extent).has("initial_domain"));
+  EXPECT_FALSE(choose("plane strain", extent).find("initial_position"));
+  EXPECT_TRUE(choose("plane strain", extent).find("initial_domain"));
 
   const Model<2> small(block_scene("axisymmetric"), {}, MPI_COMM_SELF);
   const Model<2> large(block_scene("axisymmetric"),

@@ -116,8 +116,8 @@ namespace impm
     {
       PointLayout layout(GeometryKind::plane_strain);
       layout.add("volume", Kind::scalar);
-      EXPECT_TRUE(layout.has("volume"));
-      EXPECT_FALSE(layout.has("stress"));
+      EXPECT_TRUE(layout.find("volume"));
+      EXPECT_FALSE(layout.find("stress"));
       EXPECT_THROW(layout.offset("stress"), std::logic_error);
     }
   } // namespace

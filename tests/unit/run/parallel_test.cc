@@ -139,8 +139,8 @@ namespace
                                       "Bodies/platen/Displacement=0; -0.05*t",
                                       "Output/load/On=platen"};
 
-  const Overrides split = {"Grid/Local refinements=1",
-                           "Grid/Refine where=0.8 - x + 0.3*y"};
+  const Overrides split_cells = {"Grid/Local refinements=1",
+                                 "Grid/Refine where=0.8 - x + 0.3*y"};
 } // namespace
 
 
@@ -152,17 +152,17 @@ TEST(ParallelMpi, GridFollowsThePlaten)
 
 TEST(ParallelMpi, LocallyRefinedGrid)
 {
-  compare<2>(upsetting(), platen_is_a_face + split);
+  compare<2>(upsetting(), platen_is_a_face + split_cells);
 }
 
 
 TEST(ParallelMpi, RateLawsAndPlaneStress)
 {
   compare<2>(upsetting(),
-             platen_is_a_face + split +
+             platen_is_a_face + split_cells +
                Overrides{"Materials/steel/Law=Jaumann von Mises"});
   compare<2>(upsetting(),
-             platen_is_a_face + split +
+             platen_is_a_face + split_cells +
                Overrides{"Materials/steel/Law=linear von Mises",
                          "Geometry/Kind=plane stress"});
 }
@@ -171,14 +171,14 @@ TEST(ParallelMpi, RateLawsAndPlaneStress)
 TEST(ParallelMpi, Boxes)
 {
   compare<2>(upsetting(),
-             platen_is_a_face + split + Overrides{"Grid/Method=GIMP"});
+             platen_is_a_face + split_cells + Overrides{"Grid/Method=GIMP"});
 }
 
 
 TEST(ParallelMpi, MeanVolume)
 {
   compare<2>(upsetting(),
-             platen_is_a_face + split +
+             platen_is_a_face + split_cells +
                Overrides{"Materials/steel/F-bar=true"});
   compare<2>(upsetting(),
              platen_is_a_face +
@@ -190,7 +190,7 @@ TEST(ParallelMpi, NewmarkAndTransfers)
 {
   for (const std::string from : {"grid", "points"})
     compare<2>(upsetting(),
-               platen_is_a_face + split +
+               platen_is_a_face + split_cells +
                  Overrides{"Time/Integrator=Newmark",
                            "Time/Acceleration from=" + from,
                            "Time/Transfer=APIC"});
@@ -203,7 +203,7 @@ TEST(ParallelMpi, FiniteElements)
                             "Boundary conditions/top/Type=velocity",
                             "Boundary conditions/top/Value=0; -0.05",
                             "Output/load/On=top"};
-  compare<2>(upsetting(), platen + split);
+  compare<2>(upsetting(), platen + split_cells);
   compare<2>(upsetting(),
              platen + Overrides{"Time/Integrator=Newmark",
                                 "Materials/steel/F-bar=true"});
@@ -217,12 +217,12 @@ TEST(ParallelMpi, MomentumFormulationAndExplicitSteps)
              platen_is_a_body + momentum +
                Overrides{"Solver/Linear solver=GMRES",
                          "Solver/Linear tolerance=1e-10"});
-  compare<2>(upsetting(), platen_is_a_body + momentum + split);
+  compare<2>(upsetting(), platen_is_a_body + momentum + split_cells);
   compare<2>(upsetting(),
              platen_is_a_face + momentum + Overrides{"Grid/Method=GIMP"});
   for (const auto &formulation : {Overrides{}, momentum})
     compare<2>(upsetting(),
-               platen_is_a_face + split + formulation +
+               platen_is_a_face + split_cells + formulation +
                  Overrides{"Time/Integrator=explicit",
                            "Time/Time step=0.01",
                            "Time/End time=0.05",
@@ -233,14 +233,14 @@ TEST(ParallelMpi, MomentumFormulationAndExplicitSteps)
 TEST(ParallelMpi, PlatenOfPoints)
 {
   compare<2>(upsetting(), platen_is_a_body);
-  compare<2>(upsetting(), platen_is_a_body + split);
+  compare<2>(upsetting(), platen_is_a_body + split_cells);
 }
 
 
 TEST(ParallelMpi, QuasiStaticWithAMG)
 {
   compare<2>(upsetting(),
-             platen_is_a_face + split +
+             platen_is_a_face + split_cells +
                Overrides{"Time/Integrator=quasi-static",
                          "Solver/Linear solver=CG",
                          "Solver/Linear tolerance=1e-6"});

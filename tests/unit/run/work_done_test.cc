@@ -44,10 +44,10 @@ namespace
         const auto end = model.problem->end_motion(u);
         model.commit(u);
         if (!model.grid.is_lagrangian) // else commit() has done it
-          model.policy->advance(model.grid,
-                                end,
-                                model.time - model.dt,
-                                model.time);
+          model.policy.advance(model.grid,
+                               end,
+                               model.time - model.dt,
+                               model.time);
         model.points.sort();
       }
     const auto totals = total(model.points);

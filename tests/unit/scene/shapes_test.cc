@@ -38,7 +38,8 @@ namespace
     find<dim>(kind).declare(prm);
     for (const auto &[name, value] : entries)
       prm.set(name, value);
-    return find<dim>(kind).create(prm, constants, others);
+    return std::make_shared<const Shape<dim>>(
+      find<dim>(kind).create(prm, constants, others));
   }
 
   /** Expects an InputError about `entry` that says all of `words`. */
@@ -128,7 +129,7 @@ TEST(Shapes, Box)
   EXPECT_FALSE(box->contains({0.4 + 1e-9, 1, 0}));
   EXPECT_FALSE(box->contains({0.2, -1e-9, 0}));
   EXPECT_FALSE(box->contains({0.2, 1, 1.1}));
-  expect_box<3>(box->bounding_box(), {0.1, 0, -1}, {0.4, 2, 1});
+  expect_box<3>(box->bounding_box, {0.1, 0, -1}, {0.4, 2, 1});
 }
 
 TEST(Shapes, BoxWithoutEndStaysSharpElsewhere)
@@ -171,7 +172,7 @@ TEST(Shapes, Ball)
   EXPECT_TRUE(ball->contains({0.8 + 1e-13, 0.4}));
   EXPECT_FALSE(ball->contains({0.8 + 1e-9, 0.4}));
   EXPECT_FALSE(ball->contains({0.7, 0.8}));
-  expect_box<2>(ball->bounding_box(), {-0.2, -0.1}, {0.8, 0.9});
+  expect_box<2>(ball->bounding_box, {-0.2, -0.1}, {0.8, 0.9});
 }
 
 TEST(Shapes, BallErrors)
@@ -205,7 +206,7 @@ TEST(Shapes, CylinderAlongAnAxis)
   EXPECT_FALSE(cylinder->contains({1.4, 1.4, 1}));
   EXPECT_FALSE(cylinder->contains({1, 1, 3 + 1e-9}));
   EXPECT_FALSE(cylinder->contains({1, 1, -1e-9}));
-  expect_box<3>(cylinder->bounding_box(), {0.5, 0.5, 0}, {1.5, 1.5, 3});
+  expect_box<3>(cylinder->bounding_box, {0.5, 0.5, 0}, {1.5, 1.5, 3});
 }
 
 TEST(Shapes, ObliqueCylinder)
@@ -221,7 +222,7 @@ TEST(Shapes, ObliqueCylinder)
   EXPECT_FALSE(cylinder->contains({-0.81, 0.61, 0}));
   EXPECT_FALSE(cylinder->contains({3.01, 4.01, 0}));
   EXPECT_FALSE(cylinder->contains({1.5, 2, 1.01}));
-  expect_box<3>(cylinder->bounding_box(), {-0.8, -0.6, -1}, {3.8, 4.6, 1});
+  expect_box<3>(cylinder->bounding_box, {-0.8, -0.6, -1}, {3.8, 4.6, 1});
 }
 
 TEST(Shapes, CylinderErrors)
@@ -249,11 +250,11 @@ TEST(Shapes, Union)
   EXPECT_TRUE(both->contains({1.5, 2.5}));
   EXPECT_TRUE(both->contains({1, 0.5}));
   EXPECT_FALSE(both->contains({0.5, 2.5}));
-  expect_box<2>(both->bounding_box(), {0, 0}, {2, 3});
+  expect_box<2>(both->bounding_box, {0, 0}, {2, 3});
 
   const auto one = create<2>("union", {{"Of", "left"}}, two_boxes());
   EXPECT_FALSE(one->contains({1.5, 0.5}));
-  expect_box<2>(one->bounding_box(), {0, 0}, {1, 1});
+  expect_box<2>(one->bounding_box, {0, 0}, {1, 1});
 }
 
 TEST(Shapes, UnionWithAFunctionHasNoBoundingBox)
@@ -263,7 +264,7 @@ TEST(Shapes, UnionWithAFunctionHasNoBoundingBox)
   for (const std::string names : {"left, half, right", "half, left, right"})
     {
       const auto all = create<2>("union", {{"Of", names}}, others);
-      EXPECT_FALSE(all->bounding_box().has_value()) << names;
+      EXPECT_FALSE(all->bounding_box.has_value()) << names;
       EXPECT_TRUE(all->contains({7, -2}));
       EXPECT_TRUE(all->contains({1.5, 2}));
       EXPECT_FALSE(all->contains({0.5, 2}));
@@ -280,7 +281,7 @@ TEST(Shapes, Difference)
   EXPECT_FALSE(rest->contains({0.1, 0.1}));
   EXPECT_FALSE(rest->contains({0.5, 0}));
   EXPECT_FALSE(rest->contains({1.5, 1}));
-  expect_box<2>(rest->bounding_box(), {0, 0}, {1, 1});
+  expect_box<2>(rest->bounding_box, {0, 0}, {1, 1});
 }
 
 TEST(Shapes, TouchingCutsLeaveNothingBetween)
@@ -326,7 +327,7 @@ TEST(Shapes, Function)
   EXPECT_TRUE(plane->contains({2, 0.9}));
   EXPECT_TRUE(plane->contains({2, 1}));
   EXPECT_FALSE(plane->contains({2, 1.1}));
-  EXPECT_FALSE(plane->bounding_box().has_value());
+  EXPECT_FALSE(plane->bounding_box.has_value());
 
   const auto ball =
     create<3>("function",

@@ -350,16 +350,15 @@ TEST(ReferenceMpi, FinerRunIsMadeOnce)
                           "Columns=top, mass",
                           "Norm=max"}});
   const auto errors = [&]() {
-    ParameterFile        parameters(file.name, line.overrides, declare_scene);
-    const auto           scene = read_scene<2>(parameters.handler());
-    const FinerRunner<2> finer(scene.references,
-                               line,
-                               directory,
-                               MPI_COMM_WORLD);
-    Simulation<2>        simulation(scene,
+    ParameterFile parameters(file.name, line.overrides, declare_scene);
+    const auto    scene = read_scene<2>(parameters.handler());
+    Simulation<2> simulation(scene,
                              CommandLine::Verbosity::quiet,
                              MPI_COMM_WORLD);
-    simulation.run(directory, "test", "", finer.run());
+    simulation.run(directory,
+                   "test",
+                   "",
+                   make_finer_runs(scene.references, line, directory));
     MPI_Barrier(MPI_COMM_WORLD);
     const auto records = errors_in(directory);
     MPI_Barrier(MPI_COMM_WORLD);

@@ -1,5 +1,5 @@
 #include <impm/base/exceptions.h>
-#include <impm/study/study_process.h>
+#include <impm/study/study_report.h>
 
 #include <gtest/gtest.h>
 
@@ -192,16 +192,15 @@ TEST(Study, Orders)
           list_of("law",
                   "set Entries = Materials/m/Law\nset Values = soft | hard\n") +
           step);
-  const auto   runs = expand(spec);
-  StudyResults results(6);
-  results[0] = result(0.5, 1);
-  results[1] = result(0.125, 3);
-  results[2] = result(0.03125, 9);
-  results[3] = result(0.8, 2);
-  results[4] = StudyResult{"no", 2, 1, 4., {}, {}, {}};
-  results[5] = result(0.05, 7);
+  auto runs      = expand(spec);
+  runs[0].result = result(0.5, 1);
+  runs[1].result = result(0.125, 3);
+  runs[2].result = result(0.03125, 9);
+  runs[3].result = result(0.8, 2);
+  runs[4].result = StudyResult{"no", 2, 1, 4., {}, {}, {}};
+  runs[5].result = result(0.05, 7);
 
-  std::istringstream       tables(order_tables(spec, runs, results));
+  std::istringstream       tables(order_tables(spec, runs));
   std::vector<std::string> orders;
   std::string              line, titles;
   while (std::getline(tables, line))
@@ -218,17 +217,18 @@ TEST(Study, Orders)
   EXPECT_EQ(orders,
             (std::vector<std::string>{"-", "2.00", "2.00", "-", "2.00"}));
 
-  const auto best = find_best(results);
-  ASSERT_EQ(best.size(), 3u);
-  EXPECT_EQ(best[0].run, 5u); // 0.05 in 7 s, 0.03 takes 9 s
-  EXPECT_EQ(best[1].run, StudySpec::none);
-  EXPECT_NE(best_csv(best, runs)
-              .find("tip,0.1,hard_0.25,0.05,7\n"
-                    "tip,0.01,none,,\n"),
-            std::string::npos)
-    << best_csv(best, runs);
+  const auto [best_csv, best_text] = find_best(runs);
+  EXPECT_EQ(best_csv,
+            "reference,tolerance,run,error,wall_seconds\n"
+            "tip,0.1,hard_0.25,0.05,7\n" // 0.03 takes 9 s
+            "tip,0.01,none,,\n"
+            "tip,0.001,none,,\n");
+  EXPECT_EQ(best_text,
+            "cheapest with tip within 10 %: hard_0.25, error 0.05, 7 s\n"
+            "cheapest with tip within 1 %: none\n"
+            "cheapest with tip within 0.1 %: none\n");
 
-  const auto csv = study_csv(spec, runs, results);
+  const auto csv = study_csv(spec, runs);
   EXPECT_EQ(csv.substr(0, csv.find('\n')),
             "law,dt,dt_size,status,exit_code,wall_seconds,steps,points,"
             "newton_iterations,linear_iterations,line_searches,step_cuts,"
@@ -252,11 +252,10 @@ TEST(Study, OrdersOfPairedLists)
             "set Entries = Time/Time step\nset Values = 4 | 2 | 4 | 2\n") +
     list_of("law",
             "set Entries = Materials/m/Law\nset Values = a | a | b | b\n"));
-  const auto   runs = expand(spec);
-  StudyResults results(4);
+  auto runs = expand(spec);
   for (unsigned int r = 0; r < 4; ++r)
-    results[r] = result(r % 2 == 0 ? 1 : 2, 1); // grows with the size
-  const auto text = order_tables(spec, runs, results);
+    runs[r].result = result(r % 2 == 0 ? 1 : 2, 1); // grows with the size
+  const auto text = order_tables(spec, runs);
   EXPECT_NE(text.find("law a\nalong grid:"), std::string::npos) << text;
   EXPECT_NE(text.find("law b\nalong grid:"), std::string::npos) << text;
   EXPECT_NE(text.find("1.00"), std::string::npos) << text;

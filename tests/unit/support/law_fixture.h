@@ -15,7 +15,7 @@
 
 namespace impm
 {
-  inline const ElasticConstants unit_elasticity(1., 0.3);
+  inline const auto unit_elasticity = ElasticConstants::from_young(1., 0.3);
 
   /** A law of density 1 and what it keeps at a point. */
   struct NamedLaw
@@ -37,44 +37,32 @@ namespace impm
     return {name, law, history};
   }
 
-  /** The same of a law without history. */
-  template <typename Law, typename Elasticity>
-  NamedLaw
-  make_elastic(const std::string &name,
-               const GeometryKind geometry,
-               const Elasticity  &elasticity)
-  {
-    return {name,
-            std::make_shared<Law>(MaterialSpec{1.}, elasticity),
-            PointLayout(geometry)};
-  }
-
   /** Every kind of law, of stiffness 1, which yields early if it yields. */
   inline std::vector<NamedLaw>
   all_solids(const GeometryKind g = GeometryKind::three_d)
   {
-    const HenckyElasticity   hencky(1., 0.3);
     const auto              &c = unit_elasticity;
-    const RateLaw::Hardening hardening(std::in_place, 0.01, 0.1),
-      softening(std::in_place, 0.01, 0.1, 0.01, 0.2);
-    return {
-      make_elastic<LogStrainElastic>("log-strain elastic", g, hencky),
-      make_law<LogStrainVonMises>("log-strain von Mises", g, hencky, 0.01, 0.1),
-      make_elastic<CoupledNeoHookean>("neo-Hookean", g, c),
-      make_elastic<DecoupledNeoHookean>("decoupled neo-Hookean", g, c),
-      make_law<LinearLaw>("linear elastic", g, c),
-      make_law<LinearLaw>("linear von Mises", g, c, hardening),
-      make_law<LinearLaw>("linear, softening", g, c, softening),
-      make_law<JaumannLaw>("Jaumann elastic", g, c),
-      make_law<JaumannLaw>("Jaumann von Mises", g, c, hardening),
-      make_law<JaumannLaw>("Jaumann, softening", g, c, softening)};
+    const LinearHardening    linear{0.01, 0.1};
+    const RateLaw::Hardening hardening(std::in_place, linear),
+      softening(std::in_place, linear, 0.01, 0.2);
+    return {make_law<LogStrainElastic>("log-strain elastic", g, c),
+            make_law<LogStrainVonMises>("log-strain von Mises", g, c, linear),
+            make_law<NeoHookean<false>>("neo-Hookean", g, c),
+            make_law<NeoHookean<true>>("decoupled neo-Hookean", g, c),
+            make_law<LinearLaw>("linear elastic", g, c),
+            make_law<LinearLaw>("linear von Mises", g, c, hardening),
+            make_law<LinearLaw>("linear, softening", g, c, softening),
+            make_law<JaumannLaw>("Jaumann elastic", g, c),
+            make_law<JaumannLaw>("Jaumann von Mises", g, c, hardening),
+            make_law<JaumannLaw>("Jaumann, softening", g, c, softening)};
   }
 
   inline NamedLaw
   fluid_law(const double K, const double mu, const double lambda)
   {
-    return make_law<NewtonianFluid>(
-      "Newtonian fluid", GeometryKind::three_d, K, mu, lambda);
+    return make_law<NewtonianFluid>("Newtonian fluid",
+                                    GeometryKind::three_d,
+                                    NewtonianFluid::Parameters{K, mu, lambda});
   }
 
   inline std::vector<NamedLaw>
@@ -129,7 +117,7 @@ namespace impm
     double
     plastic_strain() const
     {
-      return layout.has("equivalent_plastic_strain") ?
+      return layout.find("equivalent_plastic_strain") ?
                history[layout.offset("equivalent_plastic_strain")] :
                0.;
     }

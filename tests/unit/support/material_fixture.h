@@ -10,6 +10,9 @@
 // Deformations, and comparisons of a law with its own differences.
 namespace impm
 {
+  /** Of laws that keep none. */
+  inline PointLayout no_history(GeometryKind::three_d);
+
   inline dealii::Tensor<2, 3>
   diagonal(const double x, const double y, const double z)
   {

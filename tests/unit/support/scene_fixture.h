@@ -4,10 +4,10 @@
 #include <deal.II/base/conditional_ostream.h>
 #include <deal.II/base/timer.h>
 
-#include <impm/footprints/scatter.h>
+#include <impm/footprints/transfer.h>
 #include <impm/grid/grid_policy.h>
 #include <impm/run/solve_step.h>
-#include <impm/scene/layout_choice.h>
+#include <impm/scene/scene.h>
 
 #include <unistd.h>
 
@@ -176,9 +176,9 @@ namespace impm
                scene.loads.tractions,
                grid)
       , rigid(scene.bodies, scene.geometry, grid)
-      , policy(make_grid_policy(scene.grid, scene.faces))
+      , policy(scene.faces)
       , integrator(make_time_integrator(scene.time))
-      , builder(make_footprint_builder(scene.grid))
+      , builder(scene.grid)
     {}
 
     Vector
@@ -273,7 +273,7 @@ namespace impm
       const auto result = problem->end_motion(u);
       advance_points(*problem, result, scene.time, points);
       if (grid.is_lagrangian)
-        policy->advance(grid, result, time, time + dt);
+        policy.advance(grid, result, time, time + dt);
       points.sort();
       time += dt;
     }
@@ -283,7 +283,7 @@ namespace impm
     {
       problem.reset();
       problem = std::make_unique<StepProblem<dim>>(
-        scene, grid, points, rigid, *integrator, *builder, counts, time, dt);
+        scene, grid, points, rigid, *integrator, builder, counts, time, dt);
     }
 
     /** Solves for one step, as Simulation does, and leaves it there. */
@@ -306,18 +306,18 @@ namespace impm
       return problem->constraints;
     }
 
-    const Scene<dim>                       scene;
-    dealii::ConditionalOStream             silence;
-    dealii::TimerOutput                    timer;
-    BackgroundGrid<dim>                    grid;
-    MaterialPoints<dim>                    points;
-    RigidBodies<dim>                       rigid;
-    std::unique_ptr<GridPolicy<dim>>       policy;
-    std::unique_ptr<TimeIntegrator>        integrator;
-    std::unique_ptr<FootprintBuilder<dim>> builder;
-    WorkCounts                             counts;
-    std::unique_ptr<StepProblem<dim>>      problem; ///< after begin_step()
-    double                                 time = 0, dt = scene.time.step;
+    const Scene<dim>                  scene;
+    dealii::ConditionalOStream        silence;
+    dealii::TimerOutput               timer;
+    BackgroundGrid<dim>               grid;
+    MaterialPoints<dim>               points;
+    RigidBodies<dim>                  rigid;
+    GridPolicy<dim>                   policy;
+    std::unique_ptr<TimeIntegrator>   integrator;
+    FootprintBuilder<dim>             builder;
+    WorkCounts                        counts;
+    std::unique_ptr<StepProblem<dim>> problem; ///< after begin_step()
+    double                            time = 0, dt = scene.time.step;
   };
 } // namespace impm
 

@@ -1,6 +1,8 @@
 #ifndef impm_balance_terms_ghost_penalty_h
 #define impm_balance_terms_ghost_penalty_h
 
+#include <deal.II/base/tensor.h>
+
 #include <deal.II/fe/mapping.h>
 
 #include <impm/balance/terms/term.h>
@@ -41,25 +43,20 @@ namespace impm
                  GeometryKind                geometry,
                  double                      gamma);
 
-    /** Adds G u. */
     void
-    add_force(const Vector &u, Vector &force) const override;
-
-    /** u . G u / 2 of the faces of this rank. */
-    double
-    energy(const Vector &u) const override;
-
-    void
-    apply(const Vector &direction, Vector &image) const override
+    add_force(const Vector &u, Vector &force) const override
     {
-      add_force(direction, image);
+      apply(u, force);
     }
 
     void
-    add_diagonal(Vector &diagonal) const override;
+    apply(const Vector &u, Vector &image) const override;
+
+    double
+    energy(const Vector &u, const Vector &felt) const override;
 
     void
-    add_matrix(bool only_pattern, const Block &add) const override;
+    add_matrix(bool only_pattern, const TakeBlock &take) const override;
 
     std::vector<Face> faces; ///< those that this rank works on
   };

@@ -19,14 +19,24 @@ namespace impm
   class InternalForces : public Term
   {
   public:
-    /** For footprints with patches, and the points' trial state. The smallest
-     * extent of a cell (m) tells how large a slope can be. */
+    /** For footprints, which have patches when a matrix is wanted, and the
+     * points' trial state. */
     InternalForces(const Footprints<dim> &footprints,
                    PointResponse<dim>    &response,
-                   double                 smallest_cell_extent);
+                   const double           smallest_cell_extent)
+      : response(response)
+      , prints(footprints)
+      , axisymmetric(response.kinematics.axisymmetric)
+      , n_gradients(response.kinematics.size)
+      , extent(smallest_cell_extent)
+    {}
 
     bool
-    evaluate(const Vector &u, bool with_tangent) override;
+    evaluate(const Vector &u, const bool with_tangent) override
+    {
+      gradients_at_points(u, response.gradients);
+      return response.evaluate(with_tangent);
+    }
 
     void
     add_force(const Vector &, Vector &force) const override
@@ -34,28 +44,26 @@ namespace impm
       add_forces_of(response.stresses, force);
     }
 
-    double
-    energy(const Vector &) const override
+    void
+    add_start_force(Vector &force) const override
     {
-      return potential;
+      add_forces_of(response.start_stresses, force);
     }
 
-    void
-    add_squares_of_parts(const Vector &,
-                         const ResidualNorm  &norm,
-                         std::vector<double> &squares) const override;
+    double
+    energy(const Vector &, const Vector &) const override
+    {
+      return response.potential;
+    }
 
-    void
-    add_start_force(Vector &force) const override;
+    std::vector<double>
+    squares_of_parts(const Vector &u, const ResidualNorm &norm) const override;
 
     void
     apply(const Vector &direction, Vector &image) const override;
 
     void
-    add_diagonal(Vector &diagonal) const override;
-
-    void
-    add_matrix(bool only_pattern, const Block &add) const override;
+    add_matrix(bool only_pattern, const TakeBlock &take) const override;
 
     void
     project_tangent() override
@@ -77,6 +85,10 @@ namespace impm
     void
     patch_matrix(const Patch &patch, dealii::FullMatrix<double> &matrix) const;
 
+    /** Fills `slopes` and `shares` for a point on all nodes of its patch. */
+    void
+    place_on_patch(unsigned int point) const;
+
     template <typename Size>
     void
     add_points(const Patch                &patch,
@@ -86,15 +98,14 @@ namespace impm
     void
     add_coupling(const Patch &patch, dealii::FullMatrix<double> &matrix) const;
 
-    const Footprints<dim> &prints;
     PointResponse<dim>    &response;
+    const Footprints<dim> &prints;
     const bool             axisymmetric;
     const unsigned int     n_gradients; ///< values of a gradient
     const double           extent;
-    double                 potential = 0;
 
     mutable std::vector<double> gradient_changes, stress_changes;
-    mutable std::vector<double> slopes, shares; ///< of a point on its patch
+    mutable std::vector<double> slopes, shares;
   };
 } // namespace impm
 

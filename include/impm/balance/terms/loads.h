@@ -4,50 +4,34 @@
 #include <impm/balance/terms/term.h>
 #include <impm/footprints/footprints.h>
 #include <impm/grid/populated_cells.h>
-#include <impm/input/sections/boundary_conditions.h>
-#include <impm/input/sections/loads.h>
-
-#include <algorithm>
+#include <impm/scene/scene.h>
 
 namespace impm
 {
-  /** Whether anything acts from outside but what is prescribed. */
-  template <int dim>
-  bool
-  has_loads(const LoadsSpec<dim> &spec, const Faces<dim> &faces)
-  {
-    return spec.body_force || !spec.tractions.empty() ||
-           std::any_of(faces.begin(), faces.end(), [](const auto &face) {
-             return face.traction != nullptr;
-           });
-  }
-
   /**
-   * Minus the forces from outside at an instant (N), with nothing at hanging
-   * nodes: body force, tractions on points, on faces of a Lagrangian grid.
-   * Collective.
+   * Forces from outside, which do not depend on the increment: body force,
+   * tractions on points (Sulsky & Kaul 2004, eq. 2.2.7, the points of a layer
+   * being the quadrature points of the surface) and, with a Lagrangian grid, on
+   * faces of the domain that have material behind them. Tractions are forces
+   * per area as it was made, whose direction does not follow the material.
    */
   template <int dim>
-  Vector
-  gather_loads(const LoadsSpec<dim>      &spec,
-               const Faces<dim>          &faces,
-               const MaterialPoints<dim> &points,
-               const Footprints<dim>     &footprints,
-               const BackgroundGrid<dim> &grid,
-               const Discretization<dim> &discretization,
-               const PopulatedCells<dim> &populated,
-               double                     instant);
-
-  /** Forces from outside, which do not depend on the increment: dead loads. */
   class Loads : public Term
   {
   public:
-    /** Minus the forces at the start and at the end of the step (N), with
-     * nothing at hanging nodes. */
-    Loads(Vector at_start, Vector at_end)
-      : at_start(std::move(at_start))
-      , at_end(std::move(at_end))
-    {}
+    /** Whether a scene has any. */
+    static bool
+    exist_in(const Scene<dim> &scene);
+
+    /** For the step from one time to another. Collective. */
+    Loads(const Scene<dim>          &scene,
+          const BackgroundGrid<dim> &grid,
+          const MaterialPoints<dim> &points,
+          const Footprints<dim>     &footprints,
+          const PopulatedCells<dim> &populated,
+          const Discretization<dim> &discretization,
+          double                     from,
+          double                     to);
 
     void
     add_force(const Vector &, Vector &force) const override
@@ -55,17 +39,50 @@ namespace impm
       force += at_end;
     }
 
-    double
-    energy(const Vector &u) const override;
-
     void
     add_start_force(Vector &force) const override
     {
       force += at_start;
     }
 
-    const Vector at_start, at_end;
+    double
+    energy(const Vector &u, const Vector &felt) const override;
+
+    /** Minus the forces at the start and at the end of the step (N), with
+     * nothing at hanging nodes. */
+    Vector at_start, at_end;
   };
+
+  /** The field of the points with the area on which a traction acts (m^2). */
+  template <int dim>
+  std::string
+  traction_field(const TractionSpec<dim> &traction)
+  {
+    return "traction_area_" + traction.name;
+  }
+
+  /**
+   * Initial area (m^2) of a point of the traction's body, seen along the
+   * normal of the layer; of the whole ring in axisymmetry, per metre of
+   * thickness in the plane. Zero where the traction does not act.
+   */
+  template <int dim>
+  double
+  traction_area(const TractionSpec<dim> &traction, const Seed<dim> &seed)
+  {
+    return traction.where->value(seed.position) > 0 ?
+             seed.volume / seed.domain[traction.normal] :
+             0.;
+  }
+
+  /**
+   * Number of points that carry each traction. Throws InputError for one
+   * without a point. Collective.
+   */
+  template <int dim>
+  std::vector<dealii::types::particle_index>
+  count_points_under_tractions(const Tractions<dim>      &tractions,
+                               const MaterialPoints<dim> &points);
 } // namespace impm
 
 #endif

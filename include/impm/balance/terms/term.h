@@ -1,17 +1,17 @@
 #ifndef impm_balance_terms_term_h
 #define impm_balance_terms_term_h
 
+#include <deal.II/base/array_view.h>
+
 #include <deal.II/lac/full_matrix.h>
 
-#include <impm/base/vector.h>
+#include <impm/balance/residual_norm.h>
 
 #include <functional>
 #include <vector>
 
 namespace impm
 {
-  class ResidualNorm;
-
   /**
    * One effect in the balance of momentum over a step: a force on the nodes as
    * a function of their increment u, with its derivative and, if there is one,
@@ -38,45 +38,55 @@ namespace impm
     virtual void
     add_force(const Vector &u, Vector &force) const = 0;
 
-    /** The potential at u (J), up to a constant. */
-    virtual double
-    energy(const Vector &u) const = 0;
-
-    /**
-     * Adds the squares of what is added up in f(u) (N^2), by groups of the
-     * norm, which tells what round-off may leave of it.
-     */
-    virtual void
-    add_squares_of_parts(const Vector & /*u*/,
-                         const ResidualNorm & /*norm*/,
-                         std::vector<double> & /*squares*/) const
-    {}
-
     /** force += f at the start of the step (N). */
     virtual void
     add_start_force(Vector & /*force*/) const
     {}
+
+    /**
+     * The potential at u (J), up to a constant. `felt` is what points feel of
+     * u, which the momentum formulation makes another.
+     */
+    virtual double
+    energy(const Vector &u, const Vector &felt) const = 0;
+
+    /**
+     * Squares of what is added up in f(u) (N^2), by groups of the norm, which
+     * tell what round-off may leave of it; none of what does not matter.
+     */
+    virtual std::vector<double>
+    squares_of_parts(const Vector & /*u*/, const ResidualNorm & /*norm*/) const
+    {
+      return {};
+    }
 
     /** image += df/du direction. */
     virtual void
     apply(const Vector & /*direction*/, Vector & /*image*/) const
     {}
 
-    /** Adds the diagonal of df/du. */
-    virtual void
-    add_diagonal(Vector & /*diagonal*/) const
-    {}
+    /** Takes nodes, by local number, and a block of theirs to make use of. */
+    using TakeBlock =
+      std::function<void(const dealii::ArrayView<const unsigned int> &nodes,
+                         dealii::FullMatrix<double>                  &block)>;
 
-    /** Takes the nodes of a block, by local number, and its values. */
-    using Block = std::function<void(const unsigned int *begin_nodes,
-                                     const unsigned int *end_nodes,
-                                     const dealii::FullMatrix<double> &values)>;
-
-    /** Calls `add` with the blocks of df/du; empty ones if only the pattern
+    /** Calls `take` with the blocks of df/du; empty ones if only the pattern
      * is wanted. A term that has a diagonal only has none. */
     virtual void
-    add_matrix(const bool /*only_pattern*/, const Block & /*add*/) const
+    add_matrix(const bool /*only_pattern*/, const TakeBlock & /*take*/) const
     {}
+
+    /** Adds the diagonal of df/du. */
+    virtual void
+    add_diagonal(Vector &diagonal) const
+    {
+      add_matrix(false, [&](const auto &nodes, const auto &block) {
+        const unsigned int n_components = block.m() / nodes.size();
+        for (unsigned int i = 0; i < block.m(); ++i)
+          diagonal.local_element(n_components * nodes[i / n_components] +
+                                 i % n_components) += block(i, i);
+      });
+    }
 
     /** Replaces df/du by its positive part. */
     virtual void

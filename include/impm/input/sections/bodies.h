@@ -1,16 +1,12 @@
 #ifndef impm_input_sections_bodies_h
 #define impm_input_sections_bodies_h
 
-#include <deal.II/base/function_parser.h>
-
-#include <impm/input/sections/geometry.h>
 #include <impm/input/sections/grid.h>
 #include <impm/input/sections/materials.h>
-#include <impm/input/sections/time.h>
+#include <impm/scene/shapes.h>
 
 #include <array>
 #include <memory>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -39,32 +35,25 @@ namespace impm
   template <int dim>
   using Bodies = std::vector<BodySpec<dim>>;
 
-  void
-  declare_bodies(dealii::ParameterHandler    &prm,
-                 const ParameterFile::Chosen &chosen);
-
-  template <int dim>
-  Bodies<dim>
-  read_bodies(dealii::ParameterHandler &prm,
-              const NamedShapes<dim>   &shapes,
-              const NamedMaterials     &materials,
-              const GridSpec<dim>      &grid,
-              const TimeSpec           &time,
-              const Constants          &constants);
-
-  /** Names of the materials that some body is made of. */
-  std::set<std::string>
-  used_materials(dealii::ParameterHandler &prm);
-
-  /** Whether one is deformable, and shapes lie in the grid. */
   template <int dim>
   void
-  check_bodies(const Bodies<dim> &bodies, const GridSpec<dim> &grid);
+  add_bodies(const Section          &top,
+             Bodies<dim>            &bodies,
+             const NamedShapes<dim> &shapes,
+             const NamedMaterials   &materials,
+             const GridSpec<dim>    &grid);
 
   /** Names of the deformable or of the rigid ones. */
   template <int dim>
   std::vector<std::string>
-  names_of_bodies(const Bodies<dim> &bodies, bool rigid);
+  names_of_bodies(const Bodies<dim> &bodies, const bool rigid)
+  {
+    std::vector<std::string> names;
+    for (const auto &body : bodies)
+      if (body.rigid == rigid)
+        names.push_back(body.name);
+    return names;
+  }
 } // namespace impm
 
 #endif

@@ -1,12 +1,7 @@
 #ifndef impm_input_sections_boundary_conditions_h
 #define impm_input_sections_boundary_conditions_h
 
-#include <deal.II/base/function_parser.h>
-
-#include <impm/input/parameter_file.h>
-#include <impm/input/sections/general.h>
 #include <impm/input/sections/grid.h>
-#include <impm/input/sections/time.h>
 
 #include <array>
 #include <memory>
@@ -37,28 +32,13 @@ namespace impm
   const std::vector<std::string> &
   face_names();
 
-  void
-  declare_boundary_conditions(dealii::ParameterHandler    &prm,
-                              const ParameterFile::Chosen &chosen);
-
-  template <int dim>
-  Faces<dim>
-  read_boundary_conditions(dealii::ParameterHandler &prm,
-                           bool                      lagrangian,
-                           const Constants          &constants);
-
-  /** At most one face moves the grid. */
-  template <int dim>
-  void
-  check_faces(const Faces<dim> &faces, const GridSpec<dim> &grid);
-
   /** Warns of faces that are to move and will lose their material. */
   template <int dim>
   void
-  warn_of_faces(const Faces<dim>         &faces,
-                const GridSpec<dim>      &grid,
-                const TimeSpec           &time,
-                std::vector<std::string> &warnings);
+  add_boundary_conditions(const Section            &top,
+                          Faces<dim>               &faces,
+                          const GridSpec<dim>      &grid,
+                          std::vector<std::string> &warnings);
 } // namespace impm
 
 #endif

@@ -1,19 +1,14 @@
 #ifndef impm_input_sections_general_h
 #define impm_input_sections_general_h
 
-#include <deal.II/base/parameter_handler.h>
+#include <impm/input/sections/section.h>
 
-#include <map>
 #include <string>
 
-// As in every section: `declare_...` and `read_...` go into the section and
-// come back; what they throw is an InputError with the path of an entry.
+// Here as in every section: `add_...` declares and reads, see Section.
 
 namespace impm
 {
-  /** Numbers that have names in the expressions of a file. */
-  using Constants = std::map<std::string, double>;
-
   struct GeneralSpec
   {
     std::string title;
@@ -21,10 +16,7 @@ namespace impm
   };
 
   void
-  declare_general(dealii::ParameterHandler &prm);
-
-  GeneralSpec
-  read_general(dealii::ParameterHandler &prm);
+  add_general(const Section &top, GeneralSpec &general);
 } // namespace impm
 
 #endif

@@ -1,11 +1,9 @@
 #ifndef impm_input_sections_grid_h
 #define impm_input_sections_grid_h
 
-#include <deal.II/base/function_parser.h>
 #include <deal.II/base/point.h>
 
-#include <impm/input/parameter_file.h>
-#include <impm/input/sections/general.h>
+#include <impm/input/sections/section.h>
 #include <impm/points/point_layout.h>
 
 #include <array>
@@ -43,22 +41,9 @@ namespace impm
     }
   };
 
-  void
-  declare_grid(dealii::ParameterHandler    &prm,
-               const ParameterFile::Chosen &chosen);
-
-  /** While entries are declared. */
-  bool
-  is_lagrangian(const ParameterFile::Chosen &chosen);
-
-  template <int dim>
-  GridSpec<dim>
-  read_grid(dealii::ParameterHandler &prm, const Constants &constants);
-
-  /** Axisymmetry has no negative radius. */
   template <int dim>
   void
-  check_grid(const GridSpec<dim> &grid, GeometryKind geometry);
+  add_grid(const Section &top, GridSpec<dim> &grid, GeometryKind geometry);
 } // namespace impm
 
 #endif

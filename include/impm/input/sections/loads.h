@@ -1,11 +1,7 @@
 #ifndef impm_input_sections_loads_h
 #define impm_input_sections_loads_h
 
-#include <deal.II/base/function_parser.h>
-
-#include <impm/input/parameter_file.h>
 #include <impm/input/sections/bodies.h>
-#include <impm/input/sections/general.h>
 
 #include <memory>
 #include <string>
@@ -38,20 +34,12 @@ namespace impm
     Tractions<dim> tractions;           ///< on points
   };
 
-  void
-  declare_loads(dealii::ParameterHandler    &prm,
-                const ParameterFile::Chosen &chosen);
-
-  template <int dim>
-  LoadsSpec<dim>
-  read_loads(dealii::ParameterHandler &prm,
-             bool                      lagrangian,
-             const Constants          &constants);
-
-  /** Whether tractions name deformable bodies. */
   template <int dim>
   void
-  check_loads(const LoadsSpec<dim> &loads, const Bodies<dim> &bodies);
+  add_loads(const Section     &top,
+            LoadsSpec<dim>    &loads,
+            const Bodies<dim> &bodies,
+            bool               lagrangian);
 } // namespace impm
 
 #endif

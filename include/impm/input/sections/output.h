@@ -1,13 +1,50 @@
 #ifndef impm_input_sections_output_h
 #define impm_input_sections_output_h
 
-#include <impm/input/sections/output_probes.h>
+#include <impm/input/sections/bodies.h>
+#include <impm/input/sections/boundary_conditions.h>
 
+#include <functional>
 #include <string>
 #include <vector>
 
 namespace impm
 {
+  /** A figure of the points in a column of the history. */
+  struct ProbeSpec
+  {
+    enum class Kind
+    {
+      point,   ///< a field at the point nearest to a place at the start; a
+               ///< displacement is carried on to the place by F
+      largest, ///< over all points of the bodies
+      smallest,
+      spread, ///< largest minus smallest
+      mean,   ///< weighted by initial volume
+      extent, ///< largest coordinate, the points' domains included
+      motion  ///< displacement of a moving face or rigid body
+    };
+    std::string              name;
+    Kind                     kind;
+    std::string              field;
+    unsigned int             component = 0;
+    double                   factor    = 1;
+    std::vector<double>      position;
+    std::vector<std::string> bodies; ///< empty: all
+    std::string              of;     ///< motion: face or rigid body
+    /** Positive at the initial places of the points that count; null: all. */
+    std::function<double(const double *initial_position)> where;
+  };
+
+  /** Force of the material on a face or a rigid body, along a direction. */
+  struct ReactionSpec
+  {
+    std::string         name;
+    std::string         on;
+    std::vector<double> direction;
+    double              factor = 1;
+  };
+
   struct OutputSpec
   {
     std::string               directory;
@@ -21,25 +58,19 @@ namespace impm
     std::vector<ReactionSpec> reactions;
   };
 
-  void
-  declare_output(dealii::ParameterHandler    &prm,
-                 const ParameterFile::Chosen &chosen);
-
-  template <int dim>
-  OutputSpec
-  read_output(dealii::ParameterHandler &prm, const Constants &constants);
-
-  /** Whether fields, faces and bodies exist. */
   template <int dim>
   void
-  check_output(const OutputSpec  &output,
-               const Faces<dim>  &faces,
-               const Bodies<dim> &bodies);
+  add_output(const Section     &top,
+             OutputSpec        &output,
+             const Faces<dim>  &faces,
+             const Bodies<dim> &bodies);
 
-  /** Throws InputError for a field of the plane in 3D. */
-  template <int dim>
+  /** Refuses what is no field of the points, in 3D also one of the plane. */
   void
-  require_dimension(const std::string &field, const std::string &entry);
+  check_field(const Section     &section,
+              const std::string &entry,
+              const std::string &field,
+              int                dim);
 } // namespace impm
 
 #endif

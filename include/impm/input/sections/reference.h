@@ -1,10 +1,7 @@
 #ifndef impm_input_sections_reference_h
 #define impm_input_sections_reference_h
 
-#include <deal.II/base/function_parser.h>
-
-#include <impm/input/parameter_file.h>
-#include <impm/input/sections/general.h>
+#include <impm/input/sections/section.h>
 #include <impm/study/curve.h>
 
 #include <memory>
@@ -41,7 +38,7 @@ namespace impm
 
     /** Columns of the history; one, but for a finer run. */
     std::vector<std::string>                   columns;
-    std::string                                against;
+    std::string                                against = "time";
     std::optional<double>                      time;  ///< none: the end
     std::shared_ptr<dealii::FunctionParser<1>> value; ///< of time or abscissa
     Curve                                      curve; ///< unless `value`
@@ -53,24 +50,16 @@ namespace impm
   const std::string &
   name_of(Norm norm);
 
-  void
-  declare_references(dealii::ParameterHandler    &prm,
-                     const ParameterFile::Chosen &chosen);
-
   /**
    * Files are looked for beside the parameter file, then in the working
-   * directory.
+   * directory. What the points and the history of a scene say is checked by
+   * Reference.
    */
   template <int dim>
-  std::vector<ReferenceSpec<dim>>
-  read_references(dealii::ParameterHandler &prm,
-                  const Constants          &constants,
-                  const std::string        &parameter_file);
-
-  /** What the points and the history of a scene say is checked by Reference. */
-  template <int dim>
   void
-  check_references(const std::vector<ReferenceSpec<dim>> &references);
+  add_references(const Section                   &top,
+                 std::vector<ReferenceSpec<dim>> &references,
+                 const std::string               &parameter_file);
 } // namespace impm
 
 #endif

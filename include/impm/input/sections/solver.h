@@ -1,7 +1,6 @@
 #ifndef impm_input_sections_solver_h
 #define impm_input_sections_solver_h
 
-#include <impm/input/parameter_file.h>
 #include <impm/input/sections/bodies.h>
 #include <impm/input/sections/time.h>
 
@@ -74,19 +73,12 @@ namespace impm
     }
   };
 
-  void
-  declare_solver(dealii::ParameterHandler    &prm,
-                 const ParameterFile::Chosen &chosen);
-
-  SolverSpec
-  read_solver(dealii::ParameterHandler &prm, const TimeSpec &time);
-
-  /** Whether the solver suits the laws of the bodies. */
   template <int dim>
   void
-  check_solver(const SolverSpec  &solver,
-               const TimeSpec    &time,
-               const Bodies<dim> &bodies);
+  add_solver(const Section     &top,
+             SolverSpec        &solver,
+             const TimeSpec    &time,
+             const Bodies<dim> &bodies);
 } // namespace impm
 
 #endif

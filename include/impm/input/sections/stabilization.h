@@ -1,7 +1,6 @@
 #ifndef impm_input_sections_stabilization_h
 #define impm_input_sections_stabilization_h
 
-#include <impm/input/parameter_file.h>
 #include <impm/input/sections/time.h>
 
 namespace impm
@@ -13,13 +12,10 @@ namespace impm
   };
 
   void
-  declare_stabilization(dealii::ParameterHandler    &prm,
-                        const ParameterFile::Chosen &chosen);
-
-  StabilizationSpec
-  read_stabilization(dealii::ParameterHandler &prm,
-                     const TimeSpec           &time,
-                     bool                      lagrangian);
+  add_stabilization(const Section     &top,
+                    StabilizationSpec &stabilization,
+                    const TimeSpec    &time,
+                    bool               lagrangian);
 } // namespace impm
 
 #endif

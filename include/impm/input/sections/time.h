@@ -1,7 +1,7 @@
 #ifndef impm_input_sections_time_h
 #define impm_input_sections_time_h
 
-#include <impm/input/parameter_file.h>
+#include <impm/input/sections/section.h>
 
 #include <string>
 #include <vector>
@@ -51,24 +51,14 @@ namespace impm
   };
 
   void
-  declare_time(dealii::ParameterHandler    &prm,
-               const ParameterFile::Chosen &chosen);
+  add_time(const Section            &top,
+           TimeSpec                 &time,
+           bool                      lagrangian,
+           std::vector<std::string> &warnings);
 
-  /** While entries are declared: whether only, or possibly, without inertia. */
+  /** Whether there is no inertia for sure, before the section is added. */
   bool
   is_quasi_static(const ParameterFile::Chosen &chosen);
-  bool
-  may_be_quasi_static(const ParameterFile::Chosen &chosen);
-
-  bool
-  is_explicit(const ParameterFile::Chosen &chosen);
-
-  TimeSpec
-  read_time(dealii::ParameterHandler &prm, bool lagrangian);
-
-  /** Adds to the warnings of the scene. */
-  void
-  check_time(const TimeSpec &time, std::vector<std::string> &warnings);
 } // namespace impm
 
 #endif

@@ -1,4 +1,4 @@
-#include <impm/balance/terms/point_traction.h>
+#include <impm/balance/terms/loads.h>
 #include <impm/base/exceptions.h>
 
 #include <gtest/gtest.h>

@@ -1,13 +1,15 @@
-#ifndef impm_footprints_gather_h
-#define impm_footprints_gather_h
+#ifndef impm_footprints_transfer_h
+#define impm_footprints_transfer_h
 
 #include <impm/footprints/footprints.h>
 #include <impm/grid/step_constraints.h>
-
-#include <vector>
+#include <impm/input/sections/time.h>
 
 namespace impm
 {
+  template <int dim>
+  class StepProblem;
+
   /** The motion of the nodes at the start of a step; empty without inertia. */
   struct NodalMotion
   {
@@ -31,6 +33,27 @@ namespace impm
                 const StepConstraints<dim> &constraints,
                 const BackgroundGrid<dim>  &grid,
                 const Discretization<dim>  &discretization);
+
+  /**
+   * From grid to points at the end of a step that has converged: positions,
+   * deformation, history and, with inertia, velocity and what else they carry
+   * of the motion:
+   *
+   *   FLIP  the velocity takes the change of the grid's (Sulsky & Kaul 2004,
+   *         eq. 2.3.2 and 2.3.3); where points carry an acceleration, with
+   *         that in place of the grid's at the start of the step
+   *         (Guilkey & Weiss 2003, section 3.3, step 7),
+   *   PIC   it becomes the grid's,
+   *   APIC  so, and the point keeps its gradient (Jiang et al. 2015).
+   *
+   * The points are not sorted. Collective.
+   */
+  template <int dim>
+  void
+  advance_points(const StepProblem<dim> &problem,
+                 const StepResult       &result,
+                 const TimeSpec         &time,
+                 MaterialPoints<dim>    &points);
 } // namespace impm
 
 #endif

@@ -289,8 +289,16 @@ namespace impm
               const std::string      &entry,
               const unsigned int      n)
   {
-    const auto values =
-      dealii::Utilities::string_to_double(split_names(prm.get(entry)));
+    const auto          words = split_names(prm.get(entry));
+    std::vector<double> values;
+    try
+      {
+        values = dealii::Utilities::string_to_double(words);
+      }
+    catch (const dealii::ExceptionBase &)
+      {
+        // one of them is no number
+      }
     if (values.size() != n)
       throw InputError(entry,
                        "found '" + prm.get(entry) + "', allowed are " +

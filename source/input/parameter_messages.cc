@@ -1,5 +1,6 @@
 #include <deal.II/base/utilities.h>
 
+#include <impm/base/compat.h>
 #include <impm/base/names.h>
 #include <impm/input/parameter_messages.h>
 #include <impm/materials/list.h>
@@ -222,8 +223,7 @@ namespace impm
       return refuse("found entry '" + match[3].str() +
                     "', which this scene does not have; allowed here are: " +
                     allowed_at(number(), text, prm, false));
-    if (says("(.*?)>?: There is no such subsection to be entered: "
-             "(?:.*\\.)?(.*)"))
+    if (says(compat::no_subsection))
       return refuse("found subsection '" + match[3].str() +
                     "', which this scene does not have (a list of names may "
                     "lack it); allowed here are: " +

@@ -167,9 +167,8 @@ namespace impm
         footprints.interpolate(places, at_points);
         add_momentum([&](const unsigned int p, const Point<dim> &x) {
           Tensor<2, dim> C;
-          std::copy_n(points.fields(p) + points.offset_affine,
-                      dim * dim,
-                      C.begin_raw());
+          for (unsigned int d = 0; d < dim; ++d)
+            C[d] = points.vector(p, points.offset_affine + d * dim);
           return C * (x - at_points[p]);
         });
       }

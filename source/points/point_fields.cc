@@ -66,7 +66,8 @@ namespace impm
                    9,
                    [value](unsigned int p, const Point<dim> &, double *values) {
                      const Tensor<2, 3> t = value(p);
-                     std::copy_n(t.begin_raw(), 9, values);
+                     for (unsigned int i = 0; i < 9; ++i)
+                       values[i] = t[i / 3][i % 3];
                    }};
     };
 

@@ -118,30 +118,23 @@ namespace impm
     dealii::Tensor<2, 3>
     load_tensor(const double *values) const
     {
+      const unsigned int   n = geometry == GeometryKind::three_d ? 3 : 2;
       dealii::Tensor<2, 3> t;
-      if (geometry == GeometryKind::three_d)
-        std::copy_n(values, 9, t.begin_raw());
-      else
-        {
-          std::copy_n(values, 2, t[0].begin_raw());
-          std::copy_n(values + 2, 2, t[1].begin_raw());
-          t[2][2] = geometry == GeometryKind::plane_strain ? 1. : values[4];
-        }
+      for (unsigned int i = 0; i < n; ++i)
+        std::copy_n(values + n * i, n, t[i].begin_raw());
+      if (n == 2)
+        t[2][2] = geometry == GeometryKind::plane_strain ? 1. : values[4];
       return t;
     }
 
     void
     store_tensor(const dealii::Tensor<2, 3> &t, double *values) const
     {
-      if (geometry == GeometryKind::three_d)
-        std::copy_n(t.begin_raw(), 9, values);
-      else
-        {
-          std::copy_n(t[0].begin_raw(), 2, values);
-          std::copy_n(t[1].begin_raw(), 2, values + 2);
-          if (geometry != GeometryKind::plane_strain)
-            values[4] = t[2][2];
-        }
+      const unsigned int n = geometry == GeometryKind::three_d ? 3 : 2;
+      for (unsigned int i = 0; i < n; ++i)
+        std::copy_n(t[i].begin_raw(), n, values + n * i);
+      if (n == 2 && geometry != GeometryKind::plane_strain)
+        values[4] = t[2][2];
     }
 
     dealii::SymmetricTensor<2, 3>
@@ -151,7 +144,8 @@ namespace impm
         return dealii::SymmetricTensor<2, 3>(
           {values[0], values[1], values[3], values[2], 0., 0.});
       dealii::SymmetricTensor<2, 3> t;
-      std::copy_n(values, 6, t.begin_raw());
+      for (unsigned int i = 0; i < 6; ++i)
+        t.access_raw_entry(i) = values[i];
       return t;
     }
 
@@ -160,7 +154,8 @@ namespace impm
                     double                              *values) const
     {
       if (geometry == GeometryKind::three_d)
-        std::copy_n(t.begin_raw(), 6, values);
+        for (unsigned int i = 0; i < 6; ++i)
+          values[i] = t.access_raw_entry(i);
       else
         {
           values[0] = t[0][0];

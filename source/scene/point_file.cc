@@ -156,6 +156,9 @@ namespace impm
                                  take_number(std::uint32_t());
       };
 
+      // Before memory is asked for: zlib packs 1032 bytes into one at most.
+      if (n_bytes / 1032 > bytes.size())
+        throw damaged;
       std::vector<unsigned char> result(n_bytes);
       std::size_t                n_unpacked = 0;
       if (is_compressed)

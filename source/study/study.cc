@@ -2,10 +2,9 @@
 #include <deal.II/base/utilities.h>
 
 #include <impm/base/exceptions.h>
+#include <impm/base/names.h>
 #include <impm/scene/scene.h>
 #include <impm/study/study.h>
-
-#include <boost/algorithm/string.hpp>
 
 #include <algorithm>
 #include <cctype>
@@ -19,17 +18,6 @@ namespace impm
 
   namespace
   {
-    /** Unlike deal.II's, keeps empty parts at the end. */
-    std::vector<std::string>
-    split(const std::string &text, const char delimiter)
-    {
-      std::vector<std::string> parts;
-      boost::split(parts, text, [&](const char c) { return c == delimiter; });
-      for (auto &part : parts)
-        boost::trim(part);
-      return parts;
-    }
-
     std::vector<double>
     numbers_in(const std::vector<std::string> &words)
     {

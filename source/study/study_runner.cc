@@ -45,8 +45,8 @@ namespace impm
                                                  declare_file);
           auto      &prm = file->handler();
           const auto output  = scene_dimension(prm) == 3 ?
-                                 read_scene<3>(prm).output :
-                                 read_scene<2>(prm).output;
+                                 read_scene<3>(prm, line.parameter_file).output :
+                                 read_scene<2>(prm, line.parameter_file).output;
           auto       figures = names_of(output.probes);
           for (const auto &reaction : output.reactions)
             figures.push_back(reaction.name);

@@ -462,6 +462,15 @@ TEST(PointFile, VtuErrorsOfBinaryData)
   expect(plain, "compressor=\"vtkLZ4DataCompressor\"", {"vtkLZ4", "vtkZLib"});
   expect(plain, zlib, {"damaged"});
   expect("", "", {"damaged"});
+
+  // A number of points that no memory has room for.
+  for (const std::string &compressor : {std::string(), zlib})
+    expect_error<2>(
+      vtu_file(vtu_piece(2000000000,
+                         data_array(coordinates + "format=\"binary\"", plain)),
+               compressor),
+      ".vtu",
+      {"damaged"});
   expect("AA", "", {"base64"});
   expect("!" + plain.substr(1), "", {"base64"});
   expect(plain.substr(0, 32), "", {"damaged"});

@@ -23,6 +23,8 @@ namespace impm
     projections += before.projections;
     solver_fallbacks += before.solver_fallbacks;
     noise_stops += before.noise_stops;
+    splits += before.splits;
+    merges += before.merges;
   }
 
   namespace
@@ -30,12 +32,13 @@ namespace impm
     /** The columns of a row in their order, with its values. */
     template <int dim>
     Figures
-    make_row(const GeometryKind geometry,
-             const StepReport  &report,
-             const double       n_points,
-             const Totals<dim> &totals,
-             const double       start_kinetic_energy,
-             const Figures     &figures)
+    make_row(const GeometryKind   geometry,
+             const StepReport    &report,
+             const double         n_points,
+             const PointsPerCell &density,
+             const Totals<dim>   &totals,
+             const double         start_kinetic_energy,
+             const Figures       &figures)
     {
       Figures row = {{"step", report.step},
                      {"time", report.time},
@@ -76,32 +79,48 @@ namespace impm
                   {"internal_work", report.internal_work},
                   {"transfer_loss",
                    report.external_work - report.stabilization_work -
-                     report.internal_work -
-                     (totals.kinetic_energy - start_kinetic_energy)}});
+                     report.internal_work + report.resampling_kinetic_energy -
+                     (totals.kinetic_energy - start_kinetic_energy)},
+                  {"splits", report.splits},
+                  {"merges", report.merges},
+                  {"resampling_energy",
+                   report.resampling_kinetic_energy +
+                     report.resampling_internal_energy},
+                  {"smallest_points_per_cell", density.smallest},
+                  {"mean_points_per_cell", density.mean}});
       return row;
     }
 
-    /** The number of the point nearest to a place. Collective. */
+    /** The number of the point that is nearest to a place, or was so at the
+     * start. Collective. */
     template <int dim>
     double
     nearest_point(const std::vector<double> &place,
-                  const MaterialPoints<dim> &points)
+                  const MaterialPoints<dim> &points,
+                  const bool                 at_start)
     {
       Point<dim> center;
       std::copy_n(place.begin(), dim, center.begin_raw());
-      double id = -1, smallest = std::numeric_limits<double>::max();
+      // Of several that are as near, the oldest one, whichever rank has it.
+      std::pair<double, double> best(std::numeric_limits<double>::max(), -1);
+      const auto consider = [&](const double square, const double id) {
+        const double slack = 1e-9 * (best.first + square);
+        if (square < best.first - slack ||
+            (square < best.first + slack && id < best.second))
+          best = {square, id};
+      };
+      unsigned int p = 0;
       for (const auto &particle : points.sorted.particles)
         {
-          const double square = particle.get_location().distance_square(center);
-          if (square < smallest)
-            {
-              smallest = square;
-              id       = particle.get_id();
-            }
+          const auto x =
+            at_start ? points.initial_position(p) : particle.get_location();
+          consider(x.distance_square(center), particle.get_id());
+          ++p;
         }
-      const auto comm = points.communicator;
-      const auto rank = Utilities::MPI::min_max_avg(smallest, comm).min_index;
-      return Utilities::MPI::broadcast(comm, id, rank);
+      for (const auto &[square, id] :
+           Utilities::MPI::all_gather(points.communicator, best))
+        consider(square, id);
+      return best.second;
     }
 
     /**
@@ -153,10 +172,17 @@ namespace impm
                                ", allowed is less than " +
                                std::to_string(field->n_components));
         }
-      const double id =
-        spec.kind == Kind::point ? nearest_point(spec.position, points) : -1;
+      const double start_id = spec.kind == Kind::point ?
+                                nearest_point(spec.position, points, false) :
+                                -1;
       return
-        [&spec, &bodies = scene.bodies, &points, component, field, id](double) {
+        [&spec, &bodies = scene.bodies, &points, component, field, start_id](
+          double) {
+          // Points that split or merge hand on the place.
+          const double id =
+            spec.kind == Kind::point && points.layout.find("parent") ?
+              nearest_point(spec.position, points, true) :
+              start_id;
           if (field)
             field->prepare();
           const double limit    = std::numeric_limits<double>::max();
@@ -271,7 +297,7 @@ namespace impm
       figures.emplace_back(reaction.name, 0);
     std::vector<std::string> names;
     for (const auto &column :
-         make_row<dim>(scene.geometry, {}, 0, {}, 0, figures))
+         make_row<dim>(scene.geometry, {}, 0, {}, {}, 0, figures))
       names.push_back(column.first);
     return names;
   }
@@ -283,6 +309,7 @@ namespace impm
                         const BackgroundGrid<dim> &grid)
     : output(scene.output)
     , points(points)
+    , grid(grid)
     , reactions(scene.output.reactions.size())
     , start_kinetic_energy(total(points).kinetic_energy)
   {
@@ -328,6 +355,7 @@ namespace impm
   {
     const auto totals   = total(points);
     const auto n_points = points.sorted.n_global();
+    density             = points_per_cell(grid, points);
     figures.clear();
     for (unsigned int i = 0; i < probes.size(); ++i)
       {
@@ -342,6 +370,7 @@ namespace impm
     const auto row = make_row(points.layout.geometry,
                               report,
                               n_points,
+                              density,
                               totals,
                               start_kinetic_energy,
                               figures);

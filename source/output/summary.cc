@@ -34,6 +34,8 @@ namespace impm
     json["ranks"]           = Utilities::MPI::n_mpi_processes(communicator);
     json["points"]          = points;
     json["bytes_per_point"] = bytes_per_point;
+    json["points_per_cell"] = {{"smallest", points_per_cell.smallest},
+                               {"mean", points_per_cell.mean}};
     json["steps"]           = steps;
     json["time"]            = time;
     for (const auto &[name, count] : counts)

@@ -117,6 +117,8 @@ namespace impm
               }
           if (offset_initial_position > 0)
             copy(seed.position, values + offset_initial_position);
+          if (const auto offset = layout.find("parent"))
+            values[*offset] = -1; // none
           if (const auto offset = layout.find("initial_domain"))
             copy(seed.domain, values + *offset);
           for (const auto &traction : tractions)
@@ -139,8 +141,12 @@ namespace impm
   {
     sorted.sort();
     data.clear();
+    ids.clear();
     for (auto &particle : sorted.particles)
-      data.push_back(particle.get_properties().data());
+      {
+        data.push_back(particle.get_properties().data());
+        ids.push_back(particle.get_id());
+      }
   }
 
   template <int dim>

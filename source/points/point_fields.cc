@@ -25,6 +25,8 @@ namespace impm
       "deformation_gradient",
       "volume",
       "body",
+      "id",
+      "parent",
       "temperature",
       "internal_energy",
       "principal_stress_difference",
@@ -134,6 +136,13 @@ namespace impm
       });
     if (name == "body")
       return scalar([&points](unsigned int p) { return points.body(p); });
+    if (name == "id")
+      return scalar([&points](unsigned int p) { return points.id(p); });
+    if (const auto offset = points.layout.find(name);
+        offset && name == "parent")
+      return scalar([&points, offset = *offset](unsigned int p) {
+        return points.fields(p)[offset];
+      });
     if (name == "temperature" && points.have_temperature())
       return scalar([&points, energy](unsigned int p) {
         const auto &material = points.material(p);

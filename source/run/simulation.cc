@@ -55,7 +55,8 @@ namespace impm
          << "  grid: " << grid.triangulation.n_global_active_cells()
          << " cells, " << grid.discretization()->dof_handler().n_dofs()
          << " unknowns\n"
-         << "  points: " << points.sorted.n_global() << '\n';
+         << "  points: " << points.sorted.n_global() << ", a cell "
+         << to_string(points_per_cell(grid, points)) << '\n';
     const auto counts =
       count_points_under_tractions(scene.loads.tractions, points);
     for (unsigned int t = 0; t < counts.size(); ++t)
@@ -86,11 +87,16 @@ namespace impm
   void
   Simulation<dim>::adapt()
   {
-    if (!policy->flag_cells(grid, points, time))
-      return;
-    TimerOutput::Scope scope(timer, "adapt the grid");
-    problem.reset();
-    adapt_grid(grid, points, rigid);
+    TimerOutput::Scope scope(timer, "adapt grid and points");
+    if (policy->flag_cells(grid, points, time))
+      {
+        problem.reset();
+        adapt_grid(grid, points, rigid);
+      }
+    const auto changes = adapt_points(scene.bodies, grid, points);
+    report.splits      = changes.splits;
+    report.merges      = changes.merges;
+    resampled.append(changes);
   }
 
   template <int dim>
@@ -170,9 +176,11 @@ namespace impm
     report.dofs         = problem->n_active_dofs;
     const Vector forces = problem->end_forces(result.increment);
     work.add(*problem, result.increment, forces);
-    report.external_work      = work.external;
-    report.internal_work      = work.internal;
-    report.stabilization_work = work.stabilization;
+    report.external_work              = work.external;
+    report.internal_work              = work.internal;
+    report.stabilization_work         = work.stabilization;
+    report.resampling_kinetic_energy  = resampled.kinetic_energy;
+    report.resampling_internal_energy = resampled.internal_energy;
     history.take_reactions(*problem, forces);
     watch_faces();
     commit();
@@ -228,11 +236,14 @@ namespace impm
                                {"tangent_projections", total.projections},
                                {"solver_fallbacks", counts.solver_fallbacks},
                                {"noise_stops", total.noise_stops},
+                               {"splits", total.splits},
+                               {"merges", total.merges},
                                {"stress_evaluations",
                                 Utilities::MPI::sum(counts.stress_evaluations,
                                            communicator)},
                                {"operator_applications", counts.operator_applications}};
     summary.figures         = history.last_figures();
+    summary.points_per_cell = history.last_density();
     summary.phases       = timer.get_summary_data(TimerOutput::total_wall_time);
     summary.wall_seconds = wall.wall_time();
     summary.warnings     = warnings.list();
@@ -241,7 +252,9 @@ namespace impm
     summary.write(directory, communicator);
     if (status != "done")
       return;
-    console.message(summary.phase_table());
+    console.message("  points at the end: " + std::to_string(summary.points) +
+                    ", a cell " + to_string(summary.points_per_cell) + '\n' +
+                    summary.phase_table());
     if (!summary.errors.empty())
       console.message(summary.error_table());
   }
@@ -295,6 +308,15 @@ namespace impm
   Simulation<dim>::write_row(const StepReport &since_row)
   {
     history.write(since_row);
+    if (history.last_density().smallest < 1)
+      {
+        std::ostringstream text;
+        text << "some cell has less than one point for its volume ("
+             << history.last_density().smallest
+             << "): forces there are those of single points; let points split, "
+                "or begin with more";
+        warn("few points", text.str());
+      }
     if (reference.follows_steps())
       {
         TimerOutput::Scope scope(timer, "references");

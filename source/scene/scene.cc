@@ -92,6 +92,9 @@ namespace impm
     if (time.has_inertia() && time.transfer == TransferKind::apic)
       for (unsigned int d = 0; d < dim; ++d)
         layout.add(std::string("velocity_gradient_") + "xyz"[d], Kind::vector);
+    const bool splits = any_of(scene.bodies, [](const auto &body) {
+      return body.adaptation >= PointAdaptation::split;
+    });
     const bool needs_initial_position =
       scene.loads.body_force_is_initial ||
       any_of(scene.loads.tractions,
@@ -99,14 +102,18 @@ namespace impm
       any_of(scene.output.point_fields,
              [](const auto &field) { return field == "displacement"; }) ||
       any_of(scene.output.probes,
-             [](const auto &probe) {
-               return probe.field == "displacement" || probe.where;
+             [&](const auto &probe) {
+               // Points that split are found by where they were.
+               return probe.field == "displacement" || probe.where ||
+                      (splits && probe.kind == ProbeSpec::Kind::point);
              }) ||
       any_of(scene.references,
              [](const auto &reference) { return !reference.field.empty(); });
     if (needs_initial_position)
       layout.add("initial_position", Kind::vector);
-    if (scene.grid.method == GridMethod::gimp ||
+    if (splits)
+      layout.add("parent", Kind::scalar);
+    if (scene.grid.method == GridMethod::gimp || splits ||
         any_of(scene.output.probes, [](const auto &probe) {
           return probe.kind == ProbeSpec::Kind::extent;
         }))

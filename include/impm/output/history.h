@@ -3,6 +3,7 @@
 
 #include <impm/balance/step_problem.h>
 #include <impm/base/files.h>
+#include <impm/points/adapt_points.h>
 #include <impm/points/point_fields.h>
 #include <impm/scene/scene.h>
 
@@ -27,7 +28,10 @@ namespace impm
     double external_work      = 0; ///< since the start (J)
     double internal_work      = 0; ///< of the stresses, as seen by the grid (J)
     double stabilization_work = 0; ///< of ghost penalty and holding (J)
-    double wall_seconds       = 0; ///< since the start
+    unsigned int splits = 0, merges = 0;
+    /** Since the start, gained where points were split or merged (J). */
+    double resampling_kinetic_energy = 0, resampling_internal_energy = 0;
+    double wall_seconds = 0; ///< since the start
 
     /** Goes on to a later step; counts add up. */
     void
@@ -95,11 +99,20 @@ namespace impm
       return rows;
     }
 
+    /** Of the last row. */
+    const PointsPerCell &
+    last_density() const
+    {
+      return density;
+    }
+
     bool remembers_rows = false; ///< from now on
 
   private:
     const OutputSpec                               &output;
     const MaterialPoints<dim>                      &points;
+    const BackgroundGrid<dim>                      &grid;
+    PointsPerCell                                   density;
     std::vector<std::function<double(double time)>> probes;
     std::vector<double>                             reactions;
     double                                          start_kinetic_energy;

@@ -3,6 +3,8 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <impm/points/adapt_points.h>
+
 #include <map>
 #include <optional>
 #include <string>
@@ -27,6 +29,7 @@ namespace impm
     std::string                                        scene, status;
     int                                                dim;
     unsigned long                                      points, bytes_per_point;
+    PointsPerCell                                      points_per_cell;
     unsigned int                                       steps;
     double                                             time;
     std::vector<std::pair<std::string, unsigned long>> counts;

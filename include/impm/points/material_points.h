@@ -94,6 +94,13 @@ namespace impm
       return data[point];
     }
 
+    /** Stays the same as long as there is the point. */
+    dealii::types::particle_index
+    id(const unsigned int point) const
+    {
+      return ids[point];
+    }
+
     unsigned int
     body(const unsigned int point) const
     {
@@ -195,6 +202,7 @@ namespace impm
   private:
     std::vector<std::shared_ptr<const Material>> materials; ///< by body
     std::vector<double *>                        data;
+    std::vector<dealii::types::particle_index>   ids;
   };
 } // namespace impm
 

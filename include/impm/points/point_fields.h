@@ -35,6 +35,7 @@ namespace impm
    *
    *   temperature      T0 + plastic work / (rho0 c): all of it heats, nothing
    *                    is conducted (Sulsky & Kaul 2004, eq. 2.3.5) (K)
+   *   parent           id of the point that it was split from, or -1
    *   internal_energy  what is stored plus plastic work (eq. 2.2.16) (J/kg)
    *   principal_stress_difference
    *                    s1 - s2 of the Cauchy stress in the plane: x and y, or

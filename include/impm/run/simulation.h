@@ -59,7 +59,7 @@ namespace impm
     std::string
     attempt(double dt);
 
-    /** Lets the policy change the cells. */
+    /** Lets the policy change the cells, and points split and merge. */
     void
     adapt();
 
@@ -125,6 +125,7 @@ namespace impm
     std::unique_ptr<StepProblem<dim>>     problem; ///< of this step
     StepResult                            result;
     WorkDone<dim>                         work;
+    PointChanges                          resampled; ///< since the start
 
     Pictures<dim>             pictures;
     History<dim>              history;

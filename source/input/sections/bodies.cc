@@ -114,6 +114,43 @@ namespace impm
                     "CSV (x, y, z, volume) or VTU file of the points.");
     }
 
+    /** Whether points split where they thin out. The papers' method does not.
+     */
+    template <int dim>
+    void
+    add_adaptation(const Section       &section,
+                   BodySpec<dim>       &body,
+                   const GridSpec<dim> &grid)
+    {
+      if (grid.is_lagrangian())
+        return;
+      using Option                = typename Choice<PointAdaptation>::Option;
+      std::vector<Option> options = {{"off", PointAdaptation::off},
+                                     {"split", PointAdaptation::split},
+                                     {"split and merge",
+                                      PointAdaptation::split_and_merge}};
+      if (grid.method == GridMethod::gimp)
+        std::swap(options[0], options[1]);
+      section.add("Point adaptation",
+                  body.adaptation,
+                  options,
+                  "Whether points are halved where they have become too long "
+                  "for their cells, and merged where too many of them share a "
+                  "cell. The default is split for GIMP, off for MPM.");
+      if (body.adaptation >= PointAdaptation::split)
+        section.add("Points across a cell",
+                    body.points_across,
+                    {"2", 0.5, 20},
+                    "A point is halved across an edge of which fewer fit "
+                    "across the cell, by a tenth.");
+      if (body.adaptation == PointAdaptation::split_and_merge)
+        section.add("Merge tolerance",
+                    body.merge_tolerance,
+                    {"0.05", 0, 1},
+                    "Points are merged whose F, and whose history in parts of "
+                    "the largest of any point, differ by no more.");
+    }
+
     template <int dim>
     void
     add_body(const Section          &section,
@@ -133,6 +170,7 @@ namespace impm
         {
           body.material =
             add_name(section, "Material", materials, "Name of a material.");
+          add_adaptation(section, body, grid);
           if (!is_quasi_static(section.chosen))
             section.add("Velocity",
                         body.velocity,

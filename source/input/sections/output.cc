@@ -48,7 +48,7 @@ namespace impm
                   "are left out.",
                   "velocity, cauchy_stress, von_mises_stress, "
                   "equivalent_plastic_strain, deformation_gradient, volume, "
-                  "body");
+                  "body, id");
       if (!output.pictures)
         output.point_fields.clear();
       for (const auto &field : output.point_fields)

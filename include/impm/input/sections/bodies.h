@@ -12,6 +12,15 @@
 
 namespace impm
 {
+  /** How the number of a body's points follows its deformation: each does what
+   * those before it do, too. */
+  enum class PointAdaptation
+  {
+    off,
+    split,
+    split_and_merge
+  };
+
   template <int dim>
   struct BodySpec
   {
@@ -22,6 +31,9 @@ namespace impm
     std::shared_ptr<const Shape<dim>> shape;
     std::string                       point_file;
     std::array<unsigned int, dim>     points_per_cell; ///< by direction
+    PointAdaptation                   adaptation    = PointAdaptation::off;
+    double                            points_across = 2; ///< wished, of a cell
+    double                            merge_tolerance = 0;
 
     std::shared_ptr<const Material>              material; ///< if deformable
     std::shared_ptr<dealii::FunctionParser<dim>> velocity; ///< at the start

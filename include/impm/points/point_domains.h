@@ -1,0 +1,86 @@
+#ifndef impm_points_point_domains_h
+#define impm_points_point_domains_h
+
+#include <impm/points/point_fields.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace impm
+{
+  template <int dim>
+  dealii::Tensor<1, dim>
+  extents_of(
+    const typename dealii::Triangulation<dim>::active_cell_iterator &cell)
+  {
+    dealii::Tensor<1, dim> extents;
+    for (unsigned int d = 0; d < dim; ++d)
+      extents[d] = cell_extent(cell, d);
+    return extents;
+  }
+
+  /** Largest part of a cell that an edge spans along an axis. */
+  template <int dim>
+  double
+  span(const dealii::Tensor<1, dim> &edge, const dealii::Tensor<1, dim> &cell)
+  {
+    double largest = 0;
+    for (unsigned int d = 0; d < dim; ++d)
+      largest = std::max(largest, std::abs(edge[d]) / cell[d]);
+    return largest;
+  }
+
+  /** Fields of a point by what splitting and merging do to them. */
+  template <int dim>
+  class PointDomains
+  {
+  public:
+    explicit PointDomains(const MaterialPoints<dim> &points)
+      : layout(points.layout)
+      , deformation(points.offset_deformation)
+      , domain(layout.offset("initial_domain"))
+      , parent(layout.offset("parent"))
+    {
+      for (const auto &field : layout.fields())
+        if (field.name == "initial_volume" ||
+            field.name.rfind("traction_area_", 0) == 0)
+          shared.push_back(field.offset);
+        else if (field.name != "body" && field.name != "parent" &&
+                 field.name != "initial_domain")
+          for (unsigned int i = 0; i < field.n_components; ++i)
+            common.push_back(field.offset + i);
+    }
+
+    /** Of the parallelogram of a point, along an axis of the start. */
+    dealii::Tensor<1, dim>
+    edge(const double *fields, const unsigned int axis) const
+    {
+      const auto             F = layout.load_tensor(fields + deformation);
+      dealii::Tensor<1, dim> edge;
+      for (unsigned int d = 0; d < dim; ++d)
+        edge[d] = F[d][axis] * fields[domain + axis];
+      return edge;
+    }
+
+    const PointLayout        &layout;
+    const unsigned int        deformation, domain, parent;
+    std::vector<unsigned int> shared; ///< parts add up to the whole
+    std::vector<unsigned int> common; ///< the same in all parts
+  };
+
+  /** 2 x kinetic energy over mass. */
+  template <int dim>
+  double
+  square_of_velocity(const MaterialPoints<dim> &points, const double *fields)
+  {
+    double sum = 0;
+    if (points.offset_velocity > 0)
+      for (unsigned int d = 0; d < dim; ++d)
+        sum += fields[points.offset_velocity + d] *
+               fields[points.offset_velocity + d];
+    return sum;
+  }
+} // namespace impm
+
+#endif

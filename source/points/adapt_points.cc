@@ -1,0 +1,110 @@
+#include <deal.II/base/mpi.h>
+
+#include <impm/points/adapt_points.h>
+#include <impm/points/point_fields.h>
+
+#include <algorithm>
+#include <iomanip>
+#include <limits>
+#include <sstream>
+
+namespace impm
+{
+  using namespace dealii;
+
+  template <int dim>
+  PointChanges
+  adapt_points(const Bodies<dim>         &bodies,
+               const BackgroundGrid<dim> &grid,
+               MaterialPoints<dim>       &points)
+  {
+    const auto any = [&](const PointAdaptation least) {
+      return std::any_of(bodies.begin(), bodies.end(), [&](const auto &body) {
+        return body.adaptation >= least;
+      });
+    };
+    if (!any(PointAdaptation::split))
+      return {};
+    auto changes = split_points(bodies, grid, points);
+    if (any(PointAdaptation::split_and_merge))
+      changes.append(merge_points(bodies, grid, points));
+    return changes;
+  }
+
+  template <int dim>
+  PointsPerCell
+  points_per_cell(const BackgroundGrid<dim> &grid,
+                  const MaterialPoints<dim> &points)
+  {
+    const auto   &layout = points.layout;
+    PointsPerCell result;
+    result.smallest      = std::numeric_limits<double>::max();
+    double       sum     = 0;
+    unsigned int n_cells = 0, n_here = 0;
+    double       volume = 0; ///< of the points of a cell, in the plane
+    const auto   finish = [&](const auto &cell) {
+      double number = n_here;
+      if (!grid.is_lagrangian)
+        {
+          number /= volume;
+          for (unsigned int d = 0; d < dim; ++d)
+            number *= cell_extent(cell, d);
+        }
+      result.smallest = std::min(result.smallest, number);
+      sum += number;
+      ++n_cells;
+      n_here = 0;
+      volume = 0;
+    };
+    typename Triangulation<dim>::active_cell_iterator cell;
+    unsigned int                                      p = 0;
+    for (const auto &particle : points.sorted.particles)
+      {
+        const auto here = particle.get_surrounding_cell();
+        if (n_here > 0 && here != cell)
+          finish(cell);
+        cell   = here;
+        auto F = deformation_gradient(points, p);
+        // In the plane: without the thickness, of a ring its cross section.
+        double depth = 1;
+        if (dim == 2)
+          {
+            if (layout.geometry == GeometryKind::axisymmetric)
+              depth = F[2][2] / (2 * numbers::PI * particle.get_location()[0]);
+            F[2][2] = 1;
+          }
+        volume += depth * points.initial_volume(p) * determinant(F);
+        ++n_here;
+        ++p;
+      }
+    if (n_here > 0)
+      finish(cell);
+    const auto comm = grid.communicator;
+    result.smallest = Utilities::MPI::min(result.smallest, comm);
+    result.mean =
+      Utilities::MPI::sum(sum, comm) / Utilities::MPI::sum(n_cells, comm);
+    return result;
+  }
+
+  std::string
+  to_string(const PointsPerCell &number)
+  {
+    std::ostringstream text;
+    text << std::setprecision(3) << "at least " << number.smallest << ", "
+         << number.mean << " in the mean";
+    return text.str();
+  }
+
+  template PointChanges
+  adapt_points(const Bodies<2> &,
+               const BackgroundGrid<2> &,
+               MaterialPoints<2> &);
+  template PointChanges
+  adapt_points(const Bodies<3> &,
+               const BackgroundGrid<3> &,
+               MaterialPoints<3> &);
+  template PointsPerCell
+  points_per_cell(const BackgroundGrid<2> &, const MaterialPoints<2> &);
+  template PointsPerCell
+  points_per_cell(const BackgroundGrid<3> &, const MaterialPoints<3> &);
+} // namespace impm

@@ -38,6 +38,7 @@ namespace impm
     GridGenerator::subdivided_hyper_rectangle(
       triangulation, coarse_cells, lower_corner, upper_corner, true);
     triangulation.refine_global(level);
+    base_level = level;
 
     for (unsigned int i = 0; i < spec.refinement_levels; ++i, ++level)
       {

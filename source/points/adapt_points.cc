@@ -36,12 +36,11 @@ namespace impm
   points_per_cell(const BackgroundGrid<dim> &grid,
                   const MaterialPoints<dim> &points)
   {
-    const auto   &layout = points.layout;
     PointsPerCell result;
     result.smallest      = std::numeric_limits<double>::max();
     double       sum     = 0;
     unsigned int n_cells = 0, n_here = 0;
-    double       volume = 0; ///< of the points of a cell, in the plane
+    double       volume = 0; ///< of the points of a cell
     const auto   finish = [&](const auto &cell) {
       double number = n_here;
       if (!grid.is_lagrangian)
@@ -63,17 +62,8 @@ namespace impm
         const auto here = particle.get_surrounding_cell();
         if (n_here > 0 && here != cell)
           finish(cell);
-        cell   = here;
-        auto F = deformation_gradient(points, p);
-        // In the plane: without the thickness, of a ring its cross section.
-        double depth = 1;
-        if (dim == 2)
-          {
-            if (layout.geometry == GeometryKind::axisymmetric)
-              depth = F[2][2] / (2 * numbers::PI * particle.get_location()[0]);
-            F[2][2] = 1;
-          }
-        volume += depth * points.initial_volume(p) * determinant(F);
+        cell = here;
+        volume += present_measure(points, p, particle.get_location());
         ++n_here;
         ++p;
       }

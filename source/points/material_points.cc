@@ -130,6 +130,7 @@ namespace impm
         if (!body.rigid)
           sorted.insert(seed_body(bodies, body, layout.geometry, grid), fill);
         materials.push_back(body.material);
+        names.push_back(body.name);
       }
     sort();
     count_points_under_tractions(tractions, *this);

@@ -178,6 +178,27 @@ namespace impm
     return std::nullopt;
   }
 
+  template <int dim>
+  double
+  present_measure(const MaterialPoints<dim> &points,
+                  const unsigned int         point,
+                  const Point<dim>          &place)
+  {
+    auto   F     = deformation_gradient(points, point);
+    double start = points.initial_volume(point);
+    if (dim == 2)
+      {
+        if (points.layout.geometry == GeometryKind::axisymmetric)
+          start *= F[2][2] / (2 * numbers::PI * place[0]);
+        F[2][2] = 1;
+      }
+    return start * determinant(F);
+  }
+
+  template double
+  present_measure(const MaterialPoints<2> &, unsigned int, const Point<2> &);
+  template double
+  present_measure(const MaterialPoints<3> &, unsigned int, const Point<3> &);
   template std::optional<PointField<2>>
   make_point_field(const std::string &, const MaterialPoints<2> &, double);
   template std::optional<PointField<3>>

@@ -18,6 +18,46 @@ namespace impm
 {
   using namespace dealii;
 
+  namespace
+  {
+    template <int dim>
+    std::unique_ptr<GridPolicy<dim>>
+    make_policy(const Scene<dim> &scene)
+    {
+      if (scene.adaptation.criteria.empty())
+        return std::make_unique<GridPolicy<dim>>(scene.faces);
+      return std::make_unique<AdaptiveGrid<dim>>(scene.faces, scene.adaptation);
+    }
+
+    /** Fills the bodies, on a grid that has been adapted to them. */
+    template <int dim>
+    MaterialPoints<dim>
+    seed_points(const Scene<dim>    &scene,
+                GridPolicy<dim>     &policy,
+                BackgroundGrid<dim> &grid)
+    {
+      const auto wants_other_cells = [&]() {
+        const MaterialPoints<dim> points(choose_layout(scene),
+                                         *scene.history,
+                                         scene.bodies,
+                                         scene.loads.tractions,
+                                         grid);
+        const RigidBodies<dim>    rigid(scene.bodies, scene.geometry, grid);
+        return policy.flag_cells(grid, points, rigid, 0, 0);
+      };
+      if (!scene.adaptation.criteria.empty())
+        for (unsigned int i = 0;
+             i < policy.largest_number_of_rounds() + 1 && wants_other_cells();
+             ++i)
+          grid.adapt();
+      return MaterialPoints<dim>(choose_layout(scene),
+                                 *scene.history,
+                                 scene.bodies,
+                                 scene.loads.tractions,
+                                 grid);
+    }
+  } // namespace
+
   template <int dim>
   Simulation<dim>::Simulation(const Scene<dim>                &the_scene,
                               const CommandLine::Verbosity     verbosity,
@@ -27,14 +67,9 @@ namespace impm
     , communicator(communicator)
     , timer(std::cout, TimerOutput::never, TimerOutput::wall_times)
     , grid(scene.grid, communicator)
-    , points(choose_layout(scene),
-             *scene.history,
-             scene.bodies,
-             scene.loads.tractions,
-             grid)
+    , policy(other_policy ? std::move(other_policy) : make_policy(scene))
+    , points(seed_points(scene, *policy, grid))
     , rigid(scene.bodies, scene.geometry, grid)
-    , policy(other_policy ? std::move(other_policy) :
-                            std::make_unique<GridPolicy<dim>>(scene.faces))
     , control(scene.time)
     , integrator(make_time_integrator(scene.time))
     , builder(scene.grid)
@@ -88,14 +123,19 @@ namespace impm
   Simulation<dim>::adapt()
   {
     TimerOutput::Scope scope(timer, "adapt grid and points");
-    if (policy->flag_cells(grid, points, time))
+    PointChanges       changes;
+    for (unsigned int i = 0; i <= policy->largest_number_of_rounds(); ++i)
       {
+        // Points follow each change of the cells.
+        changes.append(adapt_points(scene.bodies, grid, points));
+        if (i == policy->largest_number_of_rounds() ||
+            !policy->flag_cells(grid, points, rigid, time, total.step))
+          break;
         problem.reset();
         adapt_grid(grid, points, rigid);
       }
-    const auto changes = adapt_points(scene.bodies, grid, points);
-    report.splits      = changes.splits;
-    report.merges      = changes.merges;
+    report.splits = changes.splits;
+    report.merges = changes.merges;
     resampled.append(changes);
   }
 

@@ -41,6 +41,14 @@ namespace impm
       return current;
     }
 
+    /** How often a cell, as the grid was made with, has been halved to make
+     * this one. */
+    int
+    level(const typename dealii::Triangulation<dim>::cell_iterator &cell) const
+    {
+      return cell->level() - base_level;
+    }
+
     /** Refines and coarsens the cells that are flagged, and sends them to other
      * ranks. Collective. */
     void
@@ -87,6 +95,7 @@ namespace impm
 
   private:
     dealii::Point<dim>                         lower_corner, upper_corner;
+    int                                        base_level = 0;
     NodalState                                 state;
     std::shared_ptr<const Discretization<dim>> current;
   };

@@ -22,16 +22,25 @@ namespace impm
     virtual ~GridPolicy() = default;
 
     /**
-     * Before a step: may flag cells of the grid for refinement or coarsening,
-     * which is then carried out with all that lives in it. Returns whether it
-     * did, on every rank alike. Collective.
+     * Before a step, numbered from 0: may flag cells of the grid for refinement
+     * or coarsening, which is then carried out with all that lives in it.
+     * Returns whether it did, on every rank alike. Collective.
      */
     virtual bool
     flag_cells(BackgroundGrid<dim> & /*grid*/,
                const MaterialPoints<dim> & /*points*/,
-               double /*time*/)
+               const RigidBodies<dim> & /*rigid*/,
+               double /*time*/,
+               unsigned int /*step*/)
     {
       return false;
+    }
+
+    /** How often cells may be flagged before one step, by one level each. */
+    virtual unsigned int
+    largest_number_of_rounds() const
+    {
+      return 1;
     }
 
     /** After a step whose points have moved. Collective. */

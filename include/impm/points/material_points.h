@@ -107,6 +107,12 @@ namespace impm
       return static_cast<unsigned int>(data[point][0]);
     }
 
+    const std::string &
+    name_of_body(const unsigned int point) const
+    {
+      return names[body(point)];
+    }
+
     const Material &
     material(const unsigned int point) const
     {
@@ -201,6 +207,7 @@ namespace impm
 
   private:
     std::vector<std::shared_ptr<const Material>> materials; ///< by body
+    std::vector<std::string>                     names;     ///< of the bodies
     std::vector<double *>                        data;
     std::vector<dealii::types::particle_index>   ids;
   };

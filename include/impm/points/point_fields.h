@@ -66,6 +66,14 @@ namespace impm
                    const MaterialPoints<dim> &points,
                    double                     fringe_number = 7);
 
+  /** Present volume of a point (m^3); of the plane its area, of a ring that of
+   * its cross section (m^2). */
+  template <int dim>
+  double
+  present_measure(const MaterialPoints<dim> &points,
+                  unsigned int               point,
+                  const dealii::Point<dim>  &place);
+
   /** F at a point. */
   template <int dim>
   dealii::Tensor<2, 3>

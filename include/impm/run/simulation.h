@@ -5,7 +5,7 @@
 
 #include <impm/app/command_line.h>
 #include <impm/app/console.h>
-#include <impm/grid/grid_policy.h>
+#include <impm/grid/adaptive_grid.h>
 #include <impm/output/history.h>
 #include <impm/output/pictures.h>
 #include <impm/output/warnings.h>
@@ -113,9 +113,9 @@ namespace impm
 
     // What outlives a step.
     BackgroundGrid<dim>                    grid;
+    const std::unique_ptr<GridPolicy<dim>> policy;
     MaterialPoints<dim>                    points;
     RigidBodies<dim>                       rigid;
-    const std::unique_ptr<GridPolicy<dim>> policy;
     double                                 time = 0;
     StepControl                            control;
 

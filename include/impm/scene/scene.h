@@ -1,6 +1,7 @@
 #ifndef impm_scene_scene_h
 #define impm_scene_scene_h
 
+#include <impm/input/sections/adaptation.h>
 #include <impm/input/sections/bodies.h>
 #include <impm/input/sections/boundary_conditions.h>
 #include <impm/input/sections/general.h>
@@ -29,6 +30,7 @@ namespace impm
     /** What the laws of the bodies keep at each point, shared by name. */
     std::optional<PointLayout>      history;
     Bodies<dim>                     bodies;
+    AdaptationSpec<dim>             adaptation;
     Faces<dim>                      faces;
     LoadsSpec<dim>                  loads;
     TimeSpec                        time;

@@ -29,7 +29,9 @@ namespace
     bool
     flag_cells(BackgroundGrid<dim> &grid,
                const MaterialPoints<dim> &,
-               const double time) override
+               const RigidBodies<dim> &,
+               const double time,
+               const unsigned int) override
     {
       auto &triangulation = grid.triangulation;
       for (const auto &cell : triangulation.active_cell_iterators())
@@ -64,7 +66,8 @@ namespace
   void
   adapt(Model<dim> &model, SplitWhere<dim> &policy)
   {
-    ASSERT_TRUE(policy.flag_cells(model.grid, model.points, model.time));
+    ASSERT_TRUE(
+      policy.flag_cells(model.grid, model.points, model.rigid, model.time, 0));
     const auto n         = model.points.sorted.n_global();
     const auto numbering = model.grid.discretization()->numbering;
     model.problem.reset();

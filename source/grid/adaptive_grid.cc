@@ -46,14 +46,15 @@ namespace impm
   AdaptiveGrid<dim>::flag_cells(BackgroundGrid<dim>       &grid,
                                 const MaterialPoints<dim> &points,
                                 const RigidBodies<dim>    &rigid,
-                                const double               time,
-                                const unsigned int         step)
+                                const PolicyTime          &now)
   {
-    if (step % spec.interval != 0)
+    if (now.step % spec.interval != 0)
       return false;
     std::vector<int> wanted(grid.triangulation.n_active_cells(), spec.lowest);
     for (const auto &criterion : spec.criteria)
-      raise_levels<dim>(criterion, {grid, points, rigid, time}, wanted);
+      raise_levels<dim>(criterion,
+                        {grid, points, rigid, now.time, now.round == 0},
+                        wanted);
     std::vector<double> refine(wanted.size());
     for (unsigned int i = 0; i < wanted.size(); ++i)
       refine[i] = std::min<int>(wanted[i], spec.highest);

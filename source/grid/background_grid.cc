@@ -18,6 +18,7 @@ namespace impm
     : communicator(communicator)
     , triangulation(communicator)
     , is_lagrangian(spec.is_lagrangian())
+    , finest_level(std::max(spec.finest_level, spec.refinement_levels))
     // Particles on faces are lost with any mapping but the Cartesian one.
     , mapping(is_lagrangian ? MappingQ<dim>(1).clone() :
                               MappingCartesian<dim>().clone())

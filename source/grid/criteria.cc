@@ -28,8 +28,7 @@ namespace impm
     BoundingBox<dim>
     box_of(const Cell<dim> &cell)
     {
-      return BoundingBox<dim>(
-        {cell->vertex(0), cell->vertex((1u << dim) - 1)});
+      return BoundingBox<dim>({cell->vertex(0), cell->vertex((1u << dim) - 1)});
     }
 
     template <int dim>
@@ -61,20 +60,18 @@ namespace impm
     /** Half of a box around the domain of a point (m). */
     template <int dim>
     Tensor<1, dim>
-    half_box(const MaterialPoints<dim>                 &points,
-             const unsigned int                         p,
-             const Point<dim>                          &place,
-             const std::optional<PointDomains<dim>>    &domains)
+    half_box(const MaterialPoints<dim>              &points,
+             const unsigned int                      p,
+             const Point<dim>                       &place,
+             const std::optional<PointDomains<dim>> &domains)
     {
       Tensor<1, dim> half;
       for (unsigned int d = 0; d < dim; ++d)
         if (domains)
           for (unsigned int axis = 0; axis < dim; ++axis)
-            half[d] +=
-              0.5 * std::abs(domains->edge(points.fields(p), axis)[d]);
+            half[d] += 0.5 * std::abs(domains->edge(points.fields(p), axis)[d]);
         else
-          half[d] =
-            0.5 * std::pow(present_measure(points, p, place), 1. / dim);
+          half[d] = 0.5 * std::pow(present_measure(points, p, place), 1. / dim);
       return half;
     }
 
@@ -85,8 +82,8 @@ namespace impm
                     std::vector<int>         &levels)
     {
       for_points(state, [&](const unsigned int p, const auto &particle) {
-        const auto   cell  = particle.get_surrounding_cell();
-        double       ratio = 1;
+        const auto cell  = particle.get_surrounding_cell();
+        double     ratio = 1;
         for (unsigned int d = 0; d < dim; ++d)
           ratio *= cell_extent(cell, d);
         ratio /= present_measure(state.points, p, particle.get_location());
@@ -105,18 +102,18 @@ namespace impm
     find_material(const GridState<dim> &state)
     {
       const auto &triangulation = state.grid.triangulation;
-      const auto  neighbors = GridTools::vertex_to_cell_map(triangulation);
+      const auto  neighbors     = GridTools::vertex_to_cell_map(triangulation);
       std::optional<PointDomains<dim>> domains;
       if (state.points.layout.find("initial_domain"))
         domains.emplace(state.points);
       Vector touched(
         triangulation.global_active_cell_index_partitioner().lock());
       for_points(state, [&](const unsigned int p, const auto &particle) {
-        const auto cell   = particle.get_surrounding_cell();
-        const auto x      = particle.get_location();
-        const auto half   = half_box(state.points, p, x, domains);
+        const auto cell = particle.get_surrounding_cell();
+        const auto x    = particle.get_location();
+        const auto half = half_box(state.points, p, x, domains);
         touched(cell->global_active_cell_index()) = 1;
-        bool inside = true;
+        bool inside                               = true;
         for (unsigned int d = 0; d < dim; ++d)
           inside = inside && x[d] - half[d] >= cell->vertex(0)[d] &&
                    x[d] + half[d] <= cell->vertex((1u << dim) - 1)[d];
@@ -132,8 +129,7 @@ namespace impm
                   const double slack = 0.05 * cell_extent(other, d);
                   overlaps =
                     x[d] + half[d] > other->vertex(0)[d] + slack &&
-                    x[d] - half[d] <
-                      other->vertex((1u << dim) - 1)[d] - slack;
+                    x[d] - half[d] < other->vertex((1u << dim) - 1)[d] - slack;
                 }
               if (overlaps)
                 touched(other->global_active_cell_index()) = 1;
@@ -291,8 +287,8 @@ namespace impm
                       const GridState<dim>     &state,
                       std::vector<int>         &levels)
     {
-      const auto  field         = find_field(criterion.field, criterion, state);
-      const auto &triangulation = state.grid.triangulation;
+      const auto          field = find_field(criterion.field, criterion, state);
+      const auto         &triangulation = state.grid.triangulation;
       std::vector<double> mean(triangulation.n_active_cells()),
         n(triangulation.n_active_cells());
       for_points(state, [&](const unsigned int p, const auto &particle) {
@@ -330,30 +326,32 @@ namespace impm
                    const GridState<dim>     &state,
                    std::vector<int>         &levels)
     {
-      const auto &points         = state.points;
-      const auto  field          = find_field("cauchy_stress",
-                                    CriterionSpec<dim>(),
-                                    state);
-      const auto  discretization = state.grid.discretization();
+      if (!state.has_stresses)
+        return for_owned_cells<dim>(state, [&](const auto &cell) {
+          raise(levels[cell->active_cell_index()], state.grid.level(cell));
+        });
+      const auto &points = state.points;
+      const auto  field =
+        find_field("cauchy_stress", CriterionSpec<dim>(), state);
+      const auto discretization = state.grid.discretization();
       // Components of the tensor, then the weight, in vectors of `dim` each.
-      constexpr unsigned int weight = 9;
+      constexpr unsigned int               weight = 9;
       std::array<Vector, weight / dim + 1> averages;
       for (auto &average : averages)
         discretization->initialize(average);
       const auto for_nodes = [&](const auto &particle, const auto &action) {
-        const auto cell  = particle.get_surrounding_cell();
-        const auto nodes = discretization->nodes_of(
-          discretization->with_dofs(cell));
+        const auto cell = particle.get_surrounding_cell();
+        const auto nodes =
+          discretization->nodes_of(discretization->with_dofs(cell));
         Point<dim> unit;
         for (unsigned int d = 0; d < dim; ++d)
           unit[d] = (particle.get_location()[d] - cell->vertex(0)[d]) /
                     cell_extent(cell, d);
         for (const auto v : cell->vertex_indices())
-          action(nodes[v],
-                 GeometryInfo<dim>::d_linear_shape_function(unit, v));
+          action(nodes[v], GeometryInfo<dim>::d_linear_shape_function(unit, v));
       };
-      const auto entry = [&](const unsigned int node, const unsigned int c)
-        -> double & {
+      const auto entry = [&](const unsigned int node,
+                             const unsigned int c) -> double & {
         return averages[c / dim].local_element(dim * node + c % dim);
       };
       const auto volume = [&](const unsigned int p) {
@@ -446,8 +444,7 @@ namespace impm
             const double level = criterion.expression->value(cell->center());
             if (!std::isnan(level))
               raise(levels[cell->active_cell_index()],
-                    static_cast<int>(
-                      std::floor(std::clamp(level, 0., 100.))));
+                    static_cast<int>(std::floor(std::clamp(level, 0., 100.))));
           });
       }
   }

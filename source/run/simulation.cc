@@ -36,18 +36,18 @@ namespace impm
                 GridPolicy<dim>     &policy,
                 BackgroundGrid<dim> &grid)
     {
-      const auto wants_other_cells = [&]() {
+      const auto wants_other_cells = [&](const PolicyTime &now) {
         const MaterialPoints<dim> points(choose_layout(scene),
                                          *scene.history,
                                          scene.bodies,
                                          scene.loads.tractions,
                                          grid);
         const RigidBodies<dim>    rigid(scene.bodies, scene.geometry, grid);
-        return policy.flag_cells(grid, points, rigid, 0, 0);
+        return policy.flag_cells(grid, points, rigid, now);
       };
       if (!scene.adaptation.criteria.empty())
-        for (unsigned int i = 0;
-             i < policy.largest_number_of_rounds() + 1 && wants_other_cells();
+        for (unsigned int i = 0; i < policy.largest_number_of_rounds() + 1 &&
+                                 wants_other_cells({0, 0, i});
              ++i)
           grid.adapt();
       return MaterialPoints<dim>(choose_layout(scene),
@@ -123,20 +123,27 @@ namespace impm
   Simulation<dim>::adapt()
   {
     TimerOutput::Scope scope(timer, "adapt grid and points");
-    PointChanges       changes;
-    for (unsigned int i = 0; i <= policy->largest_number_of_rounds(); ++i)
+    for (unsigned int i = 0;
+         i < policy->largest_number_of_rounds() &&
+         policy->flag_cells(grid, points, rigid, {time, total.step, i});
+         ++i)
       {
-        // Points follow each change of the cells.
-        changes.append(adapt_points(scene.bodies, grid, points));
-        if (i == policy->largest_number_of_rounds() ||
-            !policy->flag_cells(grid, points, rigid, time, total.step))
-          break;
         problem.reset();
         adapt_grid(grid, points, rigid);
+        resample();
       }
-    report.splits = changes.splits;
-    report.merges = changes.merges;
+  }
+
+  template <int dim>
+  void
+  Simulation<dim>::resample()
+  {
+    const auto changes = adapt_points(scene.bodies, grid, points);
+    report.splits += changes.splits;
+    report.merges += changes.merges;
     resampled.append(changes);
+    report.resampling_kinetic_energy  = resampled.kinetic_energy;
+    report.resampling_internal_energy = resampled.internal_energy;
   }
 
   template <int dim>
@@ -179,6 +186,8 @@ namespace impm
   {
     report      = StepReport();
     report.step = total.step + 1;
+    if (total.step == 0)
+      resample();
     adapt();
     for (double dt = control.begin(time, step_unit());;)
       {
@@ -216,11 +225,9 @@ namespace impm
     report.dofs         = problem->n_active_dofs;
     const Vector forces = problem->end_forces(result.increment);
     work.add(*problem, result.increment, forces);
-    report.external_work              = work.external;
-    report.internal_work              = work.internal;
-    report.stabilization_work         = work.stabilization;
-    report.resampling_kinetic_energy  = resampled.kinetic_energy;
-    report.resampling_internal_energy = resampled.internal_energy;
+    report.external_work      = work.external;
+    report.internal_work      = work.internal;
+    report.stabilization_work = work.stabilization;
     history.take_reactions(*problem, forces);
     watch_faces();
     commit();
@@ -241,6 +248,7 @@ namespace impm
     policy->advance(grid, result, time, end);
     points.sort();
     rigid.move(time, end);
+    resample();
     time = end;
   }
 

@@ -27,6 +27,7 @@ namespace impm
       add_materials(top, materials, *scene.history);
       add_bodies(top, scene.bodies, shapes, materials, scene.grid);
       add_adaptation(top, scene.adaptation, scene.grid, scene.bodies);
+      scene.grid.finest_level = scene.adaptation.highest;
       add_boundary_conditions(top, scene.faces, scene.grid, scene.warnings);
       add_loads(top, scene.loads, scene.bodies, lagrangian);
       add_time(top, scene.time, lagrangian, scene.warnings);

@@ -57,17 +57,28 @@ namespace impm
                const BackgroundGrid<dim> &grid,
                std::vector<Seed<dim>>    &seeds)
     {
-      const auto pattern =
-        points_of_a_cell<dim>(body.points_per_cell, grid.is_lagrangian);
+      const auto pattern_of = [&](const unsigned int multiple) {
+        auto numbers = body.points_per_cell;
+        for (auto &number : numbers)
+          number *= multiple;
+        return points_of_a_cell<dim>(numbers, grid.is_lagrangian);
+      };
+      const auto            regular = pattern_of(1);
       const FE_Nothing<dim> no_field;
       FEValues<dim>         values(*grid.mapping,
                            no_field,
-                           pattern,
+                           regular,
                            update_quadrature_points | update_JxW_values);
       std::string           cut;
       for (const auto &cell : grid.triangulation.active_cell_iterators())
         if (cell->is_locally_owned())
           {
+            // Rigid bodies must have no gaps where cells become finer.
+            const unsigned int multiple =
+              body.rigid ?
+                1u << std::max(0, grid.finest_level - grid.level(cell)) :
+                1u;
+            const auto pattern = multiple == 1 ? regular : pattern_of(multiple);
             const unsigned int n_before = seeds.size();
             if (grid.is_lagrangian)
               values.reinit(cell);
@@ -80,7 +91,8 @@ namespace impm
                 for (unsigned int d = 0; d < dim; ++d)
                   {
                     const double extent = cell_extent(cell, d);
-                    seed.domain[d]      = extent / body.points_per_cell[d];
+                    seed.domain[d] =
+                      extent / (multiple * body.points_per_cell[d]);
                     seed.position[d] =
                       cell->vertex(0)[d] + seed.unit_position[d] * extent;
                     seed.volume *= seed.domain[d];

@@ -26,8 +26,7 @@ namespace impm
     flag_cells(BackgroundGrid<dim>       &grid,
                const MaterialPoints<dim> &points,
                const RigidBodies<dim>    &rigid,
-               double                     time,
-               unsigned int               step) override;
+               const PolicyTime          &now) override;
 
     unsigned int
     largest_number_of_rounds() const override

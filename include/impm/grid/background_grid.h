@@ -89,6 +89,7 @@ namespace impm
     const MPI_Comm                                    communicator;
     dealii::parallel::distributed::Triangulation<dim> triangulation;
     const bool                                        is_lagrangian;
+    const int finest_level; ///< that a cell may ever have
 
     /** From unit cells to where the grid was made. */
     const std::unique_ptr<const dealii::Mapping<dim>> mapping;

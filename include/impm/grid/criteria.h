@@ -16,6 +16,7 @@ namespace impm
     const MaterialPoints<dim> &points;
     const RigidBodies<dim>    &rigid;
     double                     time;
+    bool has_stresses; ///< of a solution on this grid, not on one before
   };
 
   /**

@@ -6,6 +6,14 @@
 
 namespace impm
 {
+  /** When a policy is asked. */
+  struct PolicyTime
+  {
+    double       time  = 0; ///< (s)
+    unsigned int step  = 0; ///< that begins, counted from 0
+    unsigned int round = 0; ///< of those before that step
+  };
+
   /**
    * How the grid goes from one step to the next: with a face that moves it and,
    * if it is Lagrangian, with the material. Another policy may adapt it, too.
@@ -22,16 +30,15 @@ namespace impm
     virtual ~GridPolicy() = default;
 
     /**
-     * Before a step, numbered from 0: may flag cells of the grid for refinement
-     * or coarsening, which is then carried out with all that lives in it.
-     * Returns whether it did, on every rank alike. Collective.
+     * Before a step: may flag cells of the grid for refinement or coarsening,
+     * which is then carried out with all that lives in it. Returns whether it
+     * did, on every rank alike. Collective.
      */
     virtual bool
     flag_cells(BackgroundGrid<dim> & /*grid*/,
                const MaterialPoints<dim> & /*points*/,
                const RigidBodies<dim> & /*rigid*/,
-               double /*time*/,
-               unsigned int /*step*/)
+               const PolicyTime & /*now*/)
     {
       return false;
     }

@@ -59,9 +59,13 @@ namespace impm
     std::string
     attempt(double dt);
 
-    /** Lets the policy change the cells, and points split and merge. */
+    /** Lets the policy change the cells. */
     void
     adapt();
+
+    /** Lets points split and merge. */
+    void
+    resample();
 
     /** Hands the result of the step to points and grid. */
     void

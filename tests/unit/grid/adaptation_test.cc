@@ -30,8 +30,7 @@ namespace
     flag_cells(BackgroundGrid<dim> &grid,
                const MaterialPoints<dim> &,
                const RigidBodies<dim> &,
-               const double time,
-               const unsigned int) override
+               const PolicyTime &now) override
     {
       auto &triangulation = grid.triangulation;
       for (const auto &cell : triangulation.active_cell_iterators())
@@ -41,9 +40,11 @@ namespace
       for (const auto &cell : triangulation.active_cell_iterators())
         if (cell->is_locally_owned())
           {
-            if (cell->level() == start_level && where(cell->center(), time) > 0)
+            if (cell->level() == start_level &&
+                where(cell->center(), now.time) > 0)
               cell->set_refine_flag();
-            if (cell->level() > start_level && where(cell->center(), time) <= 0)
+            if (cell->level() > start_level &&
+                where(cell->center(), now.time) <= 0)
               cell->set_coarsen_flag();
           }
       return true;
@@ -66,8 +67,8 @@ namespace
   void
   adapt(Model<dim> &model, SplitWhere<dim> &policy)
   {
-    ASSERT_TRUE(
-      policy.flag_cells(model.grid, model.points, model.rigid, model.time, 0));
+    ASSERT_TRUE(policy.flag_cells(
+      model.grid, model.points, model.rigid, {model.time, 0, 0}));
     const auto n         = model.points.sorted.n_global();
     const auto numbering = model.grid.discretization()->numbering;
     model.problem.reset();

@@ -34,6 +34,9 @@ namespace impm
     unsigned int                                 refinement_levels = 0;
     std::shared_ptr<dealii::FunctionParser<dim>> refine_where;
 
+    /** How often a cell may be split while the grid adapts. */
+    unsigned int finest_level = 0;
+
     bool
     is_lagrangian() const
     {

@@ -129,7 +129,7 @@ TEST(AdaptiveGridMpi, BufferAndHysteresisSurround)
 TEST(AdaptiveGridMpi, StressErrorFindsTheCorner)
 {
   const auto run = [](const MPI_Comm communicator) {
-    Model<2>     model(block_scene("plane strain"),
+    Model<2>                  model(block_scene("plane strain"),
                    criterion("stress error", {"Tolerance=0.1"}) +
                      Overrides{"Grid/Method=GIMP",
                                "Geometry/Shapes=box, b, both",
@@ -147,12 +147,16 @@ TEST(AdaptiveGridMpi, StressErrorFindsTheCorner)
                                "Boundary conditions/top/Type=displacement",
                                "Boundary conditions/top/Value=0; -0.05*t"},
                    communicator);
-    impm::Vector u;
-    EXPECT_TRUE(model.solve(u).converged);
-    model.commit(u);
-    model.problem.reset();
-    const auto levels  = adapt(model);
-    double     nearest = 1e9;
+    impm::Vector              u;
+    std::vector<unsigned int> levels;
+    for (unsigned int step = 0; step < 2; ++step)
+      {
+        EXPECT_TRUE(model.solve(u).converged);
+        model.commit(u);
+        model.problem.reset();
+        levels = adapt(model);
+      }
+    double nearest = 1e9;
     for (const auto &cell : model.grid.triangulation.active_cell_iterators())
       if (cell->is_locally_owned() && model.grid.level(cell) == 2)
         nearest = std::min(nearest, cell->center().distance({0.5, 0.5}));

@@ -117,7 +117,7 @@ namespace
                                "Bodies/block/Point adaptation=split",
                                "Loads/Tractions=pull",
                                "Loads/pull/Body=block",
-                               "Loads/pull/Where=x - 0.87",
+                               "Loads/pull/Where=x - 0.6",
                                "Loads/pull/Value=0.01; 0"};
   const Overrides merging   = {"Grid/Method=GIMP",
                                "Bodies/block/Points per cell=8",
@@ -163,7 +163,14 @@ namespace
     for (const auto &override : overrides)
       all += ", " + override;
     SCOPED_TRACE(all);
-    Model<dim> model(block_scene(kind), splitting + overrides);
+    // Room around the body: domains that leave the grid are cut.
+    const std::string z = dim == 3 ? ", 0.25" : "",
+                      Z = dim == 3 ? ", 0.75" : "";
+    Model<dim> model(block_scene(kind),
+                     splitting +
+                       Overrides{"Geometry/box/Lower corner=0.25, 0.25" + z,
+                                 "Geometry/box/Upper corner=0.75, 0.75" + Z} +
+                       overrides);
     deform(model, 0.7);
     std::map<unsigned int, double> volumes;
     for (unsigned int p = 0; p < model.points.size(); ++p)
@@ -320,8 +327,8 @@ TEST(AdaptPointsMpi, RigidRotationStays)
   for (const auto &particle : model.points.sorted.particles)
     {
       const auto x = particle.get_location();
-      EXPECT_NEAR(model.points.velocity(p)[0], 0.3 - 2 * x[1], 1e-14);
-      EXPECT_NEAR(model.points.velocity(p)[1], 2 * x[0], 1e-14);
+      EXPECT_NEAR(model.points.velocity(p)[0], 0.3 - 2 * x[1], 1e-8);
+      EXPECT_NEAR(model.points.velocity(p)[1], 2 * x[0], 1e-8);
       ++p;
     }
   model.begin_step();
@@ -330,7 +337,7 @@ TEST(AdaptPointsMpi, RigidRotationStays)
   for (unsigned int i = 0; i < v.locally_owned_size(); ++i)
     EXPECT_NEAR(v.local_element(i),
                 i % 2 == 0 ? 0.3 - 2 * nodes[i / 2][1] : 2 * nodes[i / 2][0],
-                1e-13);
+                1e-8);
 }
 
 

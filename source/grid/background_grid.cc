@@ -71,6 +71,21 @@ namespace impm
   BackgroundGrid<dim>::adapt()
   {
     triangulation.execute_coarsening_and_refinement();
+    renumber();
+  }
+
+  template <int dim>
+  void
+  BackgroundGrid<dim>::repartition()
+  {
+    triangulation.repartition();
+    renumber();
+  }
+
+  template <int dim>
+  void
+  BackgroundGrid<dim>::renumber()
+  {
     current = std::make_shared<Discretization<dim>>(
       std::make_shared<NodeNumbering<dim>>(triangulation,
                                            current->numbering->epoch + 1),

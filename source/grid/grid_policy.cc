@@ -33,29 +33,54 @@ namespace impm
         grid.move_face(f, face_position(grid, f, from, to));
   }
 
+  namespace
+  {
+    /** Changes the cells of the grid under points and rigid bodies. */
+    template <int dim>
+    void
+    change_cells(BackgroundGrid<dim>         &grid,
+                 MaterialPoints<dim>         &points,
+                 RigidBodies<dim>            &rigid,
+                 const std::function<void()> &change)
+    {
+      if (grid.is_lagrangian)
+        throw ComputationError("the cells of a Lagrangian grid cannot change");
+      std::vector<SortedParticles<dim> *> all = {&points.sorted};
+      for (const auto &body : rigid.bodies)
+        all.push_back(body.points.get());
+      for (auto *some : all)
+        some->particles.prepare_for_coarsening_and_refinement();
+      change();
+      for (auto *some : all)
+        some->particles.unpack_after_coarsening_and_refinement();
+      points.sort();
+      for (const auto &body : rigid.bodies)
+        body.points->sort();
+    }
+  } // namespace
+
   template <int dim>
   void
   adapt_grid(BackgroundGrid<dim> &grid,
              MaterialPoints<dim> &points,
              RigidBodies<dim>    &rigid)
   {
-    if (grid.is_lagrangian)
-      throw ComputationError("the cells of a Lagrangian grid cannot change");
-    std::vector<SortedParticles<dim> *> all = {&points.sorted};
-    for (const auto &body : rigid.bodies)
-      all.push_back(body.points.get());
-    for (auto *some : all)
-      some->particles.prepare_for_coarsening_and_refinement();
-    grid.adapt();
-    for (auto *some : all)
-      some->particles.unpack_after_coarsening_and_refinement();
-    points.sort();
-    for (const auto &body : rigid.bodies)
-      body.points->sort();
+    change_cells<dim>(grid, points, rigid, [&]() { grid.adapt(); });
+  }
+
+  template <int dim>
+  void
+  repartition_grid(BackgroundGrid<dim> &grid,
+                   MaterialPoints<dim> &points,
+                   RigidBodies<dim>    &rigid)
+  {
+    change_cells<dim>(grid, points, rigid, [&]() { grid.repartition(); });
   }
 
   template class GridPolicy<2>;
   template class GridPolicy<3>;
-  template decltype(adapt_grid<2>) adapt_grid<2>;
-  template decltype(adapt_grid<3>) adapt_grid<3>;
+  template decltype(adapt_grid<2>)       adapt_grid<2>;
+  template decltype(adapt_grid<3>)       adapt_grid<3>;
+  template decltype(repartition_grid<2>) repartition_grid<2>;
+  template decltype(repartition_grid<3>) repartition_grid<3>;
 } // namespace impm

@@ -93,7 +93,10 @@ namespace impm
       static const std::map<std::string, std::string> choices = {
         {"Geometry/Kind", "3D"},
         {"Geometry/Shapes", join(names_of(shape_list<3>()), ",")},
+        {"Grid/Method", "any"},
         {"Grid/Local refinements", "1"},
+        {"Grid/Adaptation/Criteria",
+         "points,free surface,distance,stress error,size,expression"},
         {"Materials/Names", join(names_of(material_list()), ",")},
         {"Bodies/Names", "deformable,rigid,from file"},
         {"Bodies/rigid/Kind", "rigid"},
@@ -120,8 +123,10 @@ namespace impm
       if (entry == "Constants from" || entry == "Limit strain" ||
           entry == "Specific heat")
         return "any";
+      if (entry == "Point adaptation")
+        return "split and merge";
       if (entry == "Law" || (entry == "Kind" && section != "Bodies"))
-        return parts[1];
+        return parts[parts.size() - 2];
       return fallback;
     }
 

@@ -18,7 +18,7 @@ namespace impm
      */
     template <typename Law, typename Elasticity, typename... Others>
     MaterialEntry
-    law(const std::string &name)
+    law(const std::string &name, const bool locks = false)
     {
       return {name,
               [](dealii::ParameterHandler    &prm,
@@ -38,7 +38,8 @@ namespace impm
                                              history,
                                              Elasticity::from_parameters(prm),
                                              Others::from_parameters(prm)...);
-              }};
+              },
+              locks};
     }
   } // namespace
 
@@ -48,7 +49,7 @@ namespace impm
     static const std::vector<MaterialEntry> list = {
       law<LogStrainElastic, ElasticConstants>("log-strain elastic"),
       law<LogStrainVonMises, ElasticConstants, LinearHardening>(
-        "log-strain von Mises"),
+        "log-strain von Mises", true),
       law<NeoHookean<false>, ElasticConstants>("neo-Hookean"),
       law<NeoHookean<true>, ElasticPair>("decoupled neo-Hookean"),
       law<LinearLaw, ElasticConstants>("linear elastic"),

@@ -87,7 +87,8 @@ namespace impm
                    report.resampling_kinetic_energy +
                      report.resampling_internal_energy},
                   {"smallest_points_per_cell", density.smallest},
-                  {"mean_points_per_cell", density.mean}});
+                  {"mean_points_per_cell", density.mean},
+                  {"imbalance", report.imbalance}});
       return row;
     }
 

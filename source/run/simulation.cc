@@ -70,6 +70,7 @@ namespace impm
     , policy(other_policy ? std::move(other_policy) : make_policy(scene))
     , points(seed_points(scene, *policy, grid))
     , rigid(scene.bodies, scene.geometry, grid)
+    , balance(grid, points)
     , control(scene.time)
     , integrator(make_time_integrator(scene.time))
     , builder(scene.grid)
@@ -131,6 +132,15 @@ namespace impm
         problem.reset();
         adapt_grid(grid, points, rigid);
         resample();
+      }
+    report.imbalance = balance.imbalance();
+    if (!grid.is_lagrangian &&
+        report.imbalance >
+          std::max(scene.grid.largest_imbalance, 1.1 * best_imbalance))
+      {
+        problem.reset();
+        repartition_grid(grid, points, rigid);
+        best_imbalance = report.imbalance = balance.imbalance();
       }
   }
 

@@ -54,6 +54,11 @@ namespace impm
     void
     adapt();
 
+    /** Sends cells to other ranks, so that each has its share of their weights.
+     * Collective. */
+    void
+    repartition();
+
     /**
      * Stretches the grid along the normal of a face (deal.II's number) so
      * that the face comes to lie at `position` (m). Collective.
@@ -95,6 +100,10 @@ namespace impm
     const std::unique_ptr<const dealii::Mapping<dim>> mapping;
 
   private:
+    /** After cells have changed or were sent. */
+    void
+    renumber();
+
     dealii::Point<dim>                         lower_corner, upper_corner;
     int                                        base_level = 0;
     NodalState                                 state;

@@ -77,6 +77,14 @@ namespace impm
   adapt_grid(BackgroundGrid<dim> &grid,
              MaterialPoints<dim> &points,
              RigidBodies<dim>    &rigid);
+
+  /** Sends cells to other ranks with all that lives in them. Not for a
+   * Lagrangian grid. Collective. */
+  template <int dim>
+  void
+  repartition_grid(BackgroundGrid<dim> &grid,
+                   MaterialPoints<dim> &points,
+                   RigidBodies<dim>    &rigid);
 } // namespace impm
 
 #endif

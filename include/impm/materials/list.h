@@ -34,6 +34,8 @@ namespace impm
     std::function<std::unique_ptr<const Material>(
       dealii::ParameterHandler &, const MaterialSpec &, PointLayout &history)>
       create;
+
+    bool locks = false; ///< flows without change of volume: F-bar by default
   };
 
   /** Every law of the program; a new one is added here. */

@@ -29,6 +29,7 @@ namespace impm
     double internal_work      = 0; ///< of the stresses, as seen by the grid (J)
     double stabilization_work = 0; ///< of ghost penalty and holding (J)
     unsigned int splits = 0, merges = 0;
+    double       imbalance = 1; ///< cost of the busiest rank over the mean
     /** Since the start, gained where points were split or merged (J). */
     double resampling_kinetic_energy = 0, resampling_internal_energy = 0;
     double wall_seconds = 0; ///< since the start

@@ -6,6 +6,7 @@
 #include <impm/app/command_line.h>
 #include <impm/app/console.h>
 #include <impm/grid/adaptive_grid.h>
+#include <impm/grid/load_balance.h>
 #include <impm/output/history.h>
 #include <impm/output/pictures.h>
 #include <impm/output/warnings.h>
@@ -59,7 +60,7 @@ namespace impm
     std::string
     attempt(double dt);
 
-    /** Lets the policy change the cells. */
+    /** Lets the policy change the cells, and ranks share the work anew. */
     void
     adapt();
 
@@ -120,8 +121,10 @@ namespace impm
     const std::unique_ptr<GridPolicy<dim>> policy;
     MaterialPoints<dim>                    points;
     RigidBodies<dim>                       rigid;
-    double                                 time = 0;
-    StepControl                            control;
+    const LoadBalance<dim>                 balance;
+    double      best_imbalance = 1; ///< that could be reached the last time
+    double      time           = 0;
+    StepControl control;
 
     const std::unique_ptr<TimeIntegrator> integrator;
     FootprintBuilder<dim>                 builder;

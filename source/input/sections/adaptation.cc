@@ -7,10 +7,10 @@ namespace impm
   {
     template <int dim>
     void
-    add_criterion(const Section       &section,
-                  CriterionSpec<dim>  &criterion,
-                  const unsigned int   highest,
-                  const Bodies<dim>   &bodies)
+    add_criterion(const Section      &section,
+                  CriterionSpec<dim> &criterion,
+                  const unsigned int  highest,
+                  const Bodies<dim>  &bodies)
     {
       using Kind     = typename CriterionSpec<dim>::Kind;
       criterion.name = section.name;

@@ -5,8 +5,8 @@ namespace impm
   namespace
   {
     const Choice<GridMethod> methods("Method",
-                                     {{"MPM", GridMethod::mpm},
-                                      {"GIMP", GridMethod::gimp},
+                                     {{"GIMP", GridMethod::gimp},
+                                      {"MPM", GridMethod::mpm},
                                       {"Lagrangian", GridMethod::lagrangian}});
 
     template <int dim>
@@ -47,9 +47,9 @@ namespace impm
                    "found a negative radius, allowed is r >= 0");
     section.add(methods,
                 grid.method,
-                "What a material point is to the grid. MPM: a place. "
-                "GIMP: a box, so that forces change smoothly when "
-                "it crosses into the next cell. Lagrangian: a Gauss "
+                "What a material point is to the grid. GIMP: a box, so "
+                "that forces change smoothly when it crosses into the "
+                "next cell. MPM: a place. Lagrangian: a Gauss "
                 "point of a grid that fits the bodies and goes with "
                 "them, that is, finite elements.");
     if (section.may_be(methods, GridMethod::lagrangian))
@@ -65,6 +65,12 @@ namespace impm
                   {{"stretched", true}, {"fixed", false}},
                   "Whether the boxes of the points stretch with them "
                   "(with the diagonal of U).");
+    if (!grid.is_lagrangian())
+      section.add("Largest imbalance",
+                  grid.largest_imbalance,
+                  {"1.2", 1},
+                  "Work of the busiest rank over the mean, above which cells "
+                  "are sent to other ranks.");
     section.add("Local refinements",
                 grid.refinement_levels,
                 {"0", 0, 10},

@@ -29,7 +29,9 @@ namespace impm
     }
 
     std::shared_ptr<const Material>
-    add_material(const Section &section, PointLayout &history)
+    add_material(const Section     &section,
+                 const GeometryKind geometry,
+                 PointLayout       &history)
     {
       const auto &law =
         section.pick("Law", material_list(), "The constitutive law.");
@@ -44,9 +46,10 @@ namespace impm
       std::optional<double> specific_heat;
       section.add("F-bar",
                   spec.average_volume,
-                  false,
+                  law.locks && geometry != GeometryKind::plane_stress,
                   "The points of a cell share its change of volume, against "
-                  "locking of materials that hardly change theirs.");
+                  "locking of materials that hardly change theirs. By default "
+                  "with log-strain von Mises, but for plane stress.");
       section.add("Specific heat",
                   specific_heat,
                   "(J/(kg K)), with which plastic or viscous work becomes "
@@ -99,6 +102,7 @@ namespace impm
         PointLayout unused(history.geometry);
         materials[name] =
           add_material(section.subsection(name),
+                       history.geometry,
                        is_used(name, section.chosen) ? history : unused);
       }
   }

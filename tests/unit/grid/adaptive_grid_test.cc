@@ -1,5 +1,6 @@
 #include <impm/base/exceptions.h>
 #include <impm/grid/adaptive_grid.h>
+#include <impm/grid/load_balance.h>
 #include <impm/output/history.h>
 #include <impm/points/adapt_points.h>
 
@@ -347,6 +348,24 @@ TEST(AdaptiveGridMpi, RunFollowsFaceAndSurface)
   EXPECT_NEAR(last(adapted, "load") / last(fine, "load"), 1., 0.01);
   EXPECT_NEAR(last(adapted, "corner") / last(fine, "corner"), 1., 0.01);
   EXPECT_GT(last(adapted, "smallest_points_per_cell"), 3.);
+}
+
+
+// A body in a corner: after sharing the work, ranks have as much of it as whole
+// cells allow, and nothing is lost.
+TEST(AdaptiveGridMpi, RanksShareTheWork)
+{
+  Model<2>             model(block_scene("plane strain"),
+                 {"Grid/Cells=32, 32", "Geometry/box/Upper corner=0.5, 0.5"});
+  const LoadBalance<2> balance(model.grid, model.points);
+  const auto           n     = Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD);
+  const auto           start = total(model.points);
+  EXPECT_GT(balance.imbalance(), n == 1 ? 0.99 : 1.5);
+  repartition_grid(model.grid, model.points, model.rigid);
+  EXPECT_LT(balance.imbalance(), 1.05);
+  EXPECT_NEAR(total(model.points).mass, start.mass, 1e-13);
+  impm::Vector u;
+  EXPECT_TRUE(model.solve(u).converged);
 }
 
 

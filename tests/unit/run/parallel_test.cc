@@ -66,6 +66,7 @@ namespace
            "  end\n"
            "end\n"
            "subsection Grid\n"
+           "  set Method       = MPM\n"
            "  set Lower corner = 0, 0\n"
            "  set Upper corner = 2, 1.5\n"
            "  set Cells        = 8, 6\n"
@@ -74,6 +75,7 @@ namespace
            "  set Names = steel\n"
            "  subsection steel\n"
            "    set Law               = log-strain von Mises\n"
+           "    set F-bar             = false\n"
            "    set Density           = 1\n"
            "    set Young's modulus   = 20\n"
            "    set Poisson's ratio   = 0.3\n"
@@ -147,6 +149,32 @@ namespace
 TEST(ParallelMpi, GridFollowsThePlaten)
 {
   compare<2>(upsetting(), platen_is_a_face);
+}
+
+
+// Cells that follow the surface and the strain, points that split and merge.
+TEST(ParallelMpi, GridAndPointsAdapt)
+{
+  const Overrides adapting = {"Grid/Method=GIMP",
+                              "Materials/steel/F-bar=true",
+                              "Bodies/billet/Point adaptation=split and merge",
+                              "Bodies/billet/Points per cell=3",
+                              "Grid/Adaptation/Criteria=surface, strain",
+                              "Grid/Adaptation/Highest level=2",
+                              "Grid/Adaptation/surface/Kind=free surface",
+                              "Grid/Adaptation/surface/Level=1",
+                              "Grid/Adaptation/strain/Kind=size",
+                              "Grid/Adaptation/strain/Field="
+                              "equivalent_plastic_strain",
+                              "Grid/Adaptation/strain/Above=0.4"};
+  compare<2>(upsetting(), platen_is_a_face + adapting);
+  compare<2>(upsetting(),
+             platen_is_a_body + adapting +
+               Overrides{"Grid/Method=MPM",
+                         "Grid/Adaptation/Criteria=surface, strain, platen",
+                         "Grid/Adaptation/platen/Kind=distance",
+                         "Grid/Adaptation/platen/Of=platen",
+                         "Grid/Adaptation/platen/Level=1"});
 }
 
 

@@ -84,6 +84,7 @@ namespace impm
            "  end\n"
            "end\n"
            "subsection Grid\n"
+           "  set Method       = MPM\n"
            "  set Lower corner = " +
            corner("0") + "  set Upper corner = " + corner("1") +
            "  set Cells        = " + corner("4") +
@@ -133,6 +134,7 @@ namespace impm
   }
 
   inline const Overrides plastic = {"Materials/rubber/Law=log-strain von Mises",
+                                    "Materials/rubber/F-bar=false",
                                     "Materials/rubber/Yield stress=0.02",
                                     "Materials/rubber/Hardening modulus=0.1"};
 

@@ -27,7 +27,7 @@ namespace impm
     };
     std::string  name;
     Kind         kind;
-    unsigned int level = 0;         ///< wanted where it holds
+    unsigned int level         = 0; ///< wanted where it holds
     double       points_across = 0; ///< points: wished, of a cell
     std::string  of;                ///< distance: a body or a face
     double       distance = 0;      ///< (m)
@@ -46,7 +46,7 @@ namespace impm
   {
     std::vector<CriterionSpec<dim>> criteria; ///< none: the grid stays
     unsigned int                    lowest = 0, highest = 0;
-    unsigned int                    interval = 1; ///< in steps
+    unsigned int                    interval = 1;               ///< in steps
     unsigned int                    buffer = 0, hysteresis = 0; ///< in cells
   };
 

@@ -25,7 +25,7 @@ namespace impm
   {
     dealii::Point<dim>            lower_corner, upper_corner;
     std::array<unsigned int, dim> cells;
-    GridMethod                    method        = GridMethod::mpm;
+    GridMethod                    method        = GridMethod::gimp;
     bool                          boxes_stretch = true; ///< GIMP: with F
     /** Lagrangian: where a place of the box really is, or null. */
     std::shared_ptr<dealii::FunctionParser<dim>> map;
@@ -33,6 +33,9 @@ namespace impm
     /** Cells whose centre makes `refine_where` positive are split so often. */
     unsigned int                                 refinement_levels = 0;
     std::shared_ptr<dealii::FunctionParser<dim>> refine_where;
+
+    /** Of the ranks, before cells are sent to others. */
+    double largest_imbalance = 1.2;
 
     /** How often a cell may be split while the grid adapts. */
     unsigned int finest_level = 0;

@@ -3,9 +3,11 @@
 #include <impm/output/history.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <iomanip>
 #include <limits>
 #include <numeric>
+#include <sstream>
 
 namespace impm
 {
@@ -105,8 +107,9 @@ namespace impm
     }
 
     /**
-     * What a probe shows at a time, without its factor: collective. Throws
-     * InputError if it asks for what this scene does not have.
+     * What a probe shows at a time, without its factor: collective. It follows
+     * the point `id` from now on. Throws InputError if it asks for what this
+     * scene does not have.
      */
     template <int dim>
     std::function<double(double time)>
@@ -114,7 +117,8 @@ namespace impm
                const Scene<dim>          &scene,
                const MaterialPoints<dim> &points,
                const RigidBodies<dim>    &rigid,
-               const BackgroundGrid<dim> &grid)
+               const BackgroundGrid<dim> &grid,
+               double                    &id)
     {
       using Kind           = ProbeSpec::Kind;
       const auto component = spec.component;
@@ -153,69 +157,68 @@ namespace impm
                                ", allowed is less than " +
                                std::to_string(field->n_components));
         }
-      const double id =
-        spec.kind == Kind::point ? nearest_point(spec.position, points) : -1;
-      return
-        [&spec, &bodies = scene.bodies, &points, component, field, id](double) {
-          if (field)
-            field->prepare();
-          const double limit    = std::numeric_limits<double>::max();
-          double       smallest = limit, largest = -limit, sum = 0, weight = 0;
-          unsigned int p = 0;
-          for (const auto &particle : points.sorted.particles)
-            {
-              const unsigned int point = p++;
-              const auto        &body =
-                bodies[static_cast<unsigned int>(points.fields(point)[0])];
-              if (spec.kind == Kind::point ?
-                    particle.get_id() != id :
-                    !spec.bodies.empty() && std::count(spec.bodies.begin(),
-                                                       spec.bodies.end(),
-                                                       body.name) == 0)
-                continue;
-              if (spec.where &&
-                  !(spec.where(points.initial_position(point).begin_raw()) > 0))
-                continue;
-              double values[9] = {};
-              if (field)
-                field->evaluate(point, particle.get_location(), values);
-              double value = values[component];
-              if (spec.kind == Kind::point && spec.field == "displacement" &&
-                  component < dim)
-                {
-                  // From the point to the place that was asked for.
-                  const auto F     = deformation_gradient(points, point);
-                  const auto start = points.initial_position(point);
-                  for (unsigned int d = 0; d < dim; ++d)
-                    value += (F[component][d] - (component == d ? 1 : 0)) *
-                             (spec.position[d] - start[d]);
-                }
-              if (spec.kind == Kind::extent)
-                {
-                  // Half the box that the point stands for, stretched by F.
-                  const auto    F      = deformation_gradient(points, point);
-                  const double *domain = points.fields(point) +
-                                         points.layout.offset("initial_domain");
-                  value = particle.get_location()[component];
-                  for (unsigned int d = 0; d < dim; ++d)
-                    value += 0.5 * std::abs(F[component][d]) * domain[d];
-                }
-              smallest = std::min(smallest, value);
-              largest  = std::max(largest, value);
-              sum += value * points.initial_volume(point);
-              weight += points.initial_volume(point);
-            }
-          const auto comm = points.communicator;
-          if (spec.kind == Kind::mean)
-            return Utilities::MPI::sum(sum, comm) /
-                   Utilities::MPI::sum(weight, comm);
-          if (spec.kind == Kind::smallest)
-            return Utilities::MPI::min(smallest, comm);
-          largest = Utilities::MPI::max(largest, comm);
-          return spec.kind == Kind::spread ?
-                   largest - Utilities::MPI::min(smallest, comm) :
-                   largest;
-        };
+      id = spec.kind == Kind::point ? nearest_point(spec.position, points) : -1;
+      return [&spec, &bodies = scene.bodies, &points, component, field, &id](
+               double) {
+        if (field)
+          field->prepare();
+        const double limit    = std::numeric_limits<double>::max();
+        double       smallest = limit, largest = -limit, sum = 0, weight = 0;
+        unsigned int p = 0;
+        for (const auto &particle : points.sorted.particles)
+          {
+            const unsigned int point = p++;
+            const auto        &body =
+              bodies[static_cast<unsigned int>(points.fields(point)[0])];
+            if (spec.kind == Kind::point ?
+                  particle.get_id() != id :
+                  !spec.bodies.empty() && std::count(spec.bodies.begin(),
+                                                     spec.bodies.end(),
+                                                     body.name) == 0)
+              continue;
+            if (spec.where &&
+                !(spec.where(points.initial_position(point).begin_raw()) > 0))
+              continue;
+            double values[9] = {};
+            if (field)
+              field->evaluate(point, particle.get_location(), values);
+            double value = values[component];
+            if (spec.kind == Kind::point && spec.field == "displacement" &&
+                component < dim)
+              {
+                // From the point to the place that was asked for.
+                const auto F     = deformation_gradient(points, point);
+                const auto start = points.initial_position(point);
+                for (unsigned int d = 0; d < dim; ++d)
+                  value += (F[component][d] - (component == d ? 1 : 0)) *
+                           (spec.position[d] - start[d]);
+              }
+            if (spec.kind == Kind::extent)
+              {
+                // Half the box that the point stands for, stretched by F.
+                const auto    F = deformation_gradient(points, point);
+                const double *domain =
+                  points.fields(point) + points.layout.offset("initial_domain");
+                value = particle.get_location()[component];
+                for (unsigned int d = 0; d < dim; ++d)
+                  value += 0.5 * std::abs(F[component][d]) * domain[d];
+              }
+            smallest = std::min(smallest, value);
+            largest  = std::max(largest, value);
+            sum += value * points.initial_volume(point);
+            weight += points.initial_volume(point);
+          }
+        const auto comm = points.communicator;
+        if (spec.kind == Kind::mean)
+          return Utilities::MPI::sum(sum, comm) /
+                 Utilities::MPI::sum(weight, comm);
+        if (spec.kind == Kind::smallest)
+          return Utilities::MPI::min(smallest, comm);
+        largest = Utilities::MPI::max(largest, comm);
+        return spec.kind == Kind::spread ?
+                 largest - Utilities::MPI::min(smallest, comm) :
+                 largest;
+      };
     }
   } // namespace
 
@@ -283,25 +286,64 @@ namespace impm
                         const BackgroundGrid<dim> &grid)
     : output(scene.output)
     , points(points)
+    , names(column_names(scene))
+    , followed(scene.output.probes.size(), -1)
     , reactions(scene.output.reactions.size())
     , start_kinetic_energy(total(points).kinetic_energy)
   {
-    rows.names = column_names(scene);
-    rows.columns.resize(rows.names.size());
     for (const auto &probe : scene.output.probes)
-      probes.push_back(make_probe(probe, scene, points, rigid, grid));
+      probes.push_back(
+        make_probe(probe, scene, points, rigid, grid, followed[probes.size()]));
   }
 
   template <int dim>
   void
-  History<dim>::open(const std::string &directory)
+  History<dim>::open(const std::string &directory, const bool goes_on)
   {
     if (Utilities::MPI::this_mpi_process(points.communicator) != 0)
       return;
-    file.open(directory + "/history.csv");
-    file << join(rows.names, ",") << std::endl;
+    file_name = directory + "/history.csv";
+    if (!goes_on)
+      {
+        file.open(file_name);
+        write_line(join(names, ","));
+        return;
+      }
+    std::error_code error;
+    std::filesystem::resize_file(file_name, size, error);
+    file.open(file_name, std::ios::app);
+    if (error || !file)
+      throw SystemError("cannot go on with '" + file_name + "'");
+  }
+
+  template <int dim>
+  void
+  History<dim>::write_line(const std::string &line)
+  {
+    file << line << std::endl;
     if (!file)
-      throw SystemError("cannot write '" + directory + "/history.csv'");
+      {
+        // Half a row is none.
+        std::error_code ignored;
+        std::filesystem::resize_file(file_name, size, ignored);
+        throw SystemError("cannot write '" + file_name + "' (disk full?)");
+      }
+    size += line.size() + 1;
+  }
+
+  template <int dim>
+  CsvTable
+  History<dim>::table() const
+  {
+    try
+      {
+        return read_csv_table(file_name);
+      }
+    catch (const InputError &error)
+      {
+        // On this rank alone.
+        throw SystemError(error.what());
+      }
   }
 
   template <int dim>
@@ -339,22 +381,17 @@ namespace impm
     if (Utilities::MPI::this_mpi_process(points.communicator) != 0)
       return;
 
-    const auto row = make_row(points.layout.geometry,
+    const auto         row = make_row(points.layout.geometry,
                               report,
                               n_points,
                               totals,
                               start_kinetic_energy,
                               figures);
-    file << std::setprecision(12);
+    std::ostringstream line;
+    line << std::setprecision(12);
     for (unsigned int i = 0; i < row.size(); ++i)
-      {
-        file << (i > 0 ? "," : "") << row[i].second;
-        if (remembers_rows)
-          rows.columns[i].push_back(row[i].second);
-      }
-    file << std::endl;
-    if (!file)
-      throw SystemError("cannot write the history (disk full?)");
+      line << (i > 0 ? "," : "") << row[i].second;
+    write_line(line.str());
   }
 
   template class History<2>;

@@ -32,6 +32,16 @@ namespace impm
     /** Goes on to a later step; counts add up. */
     void
     append(const StepReport &next);
+
+    template <class Archive>
+    void
+    serialize(Archive &archive, const unsigned int /*version*/)
+    {
+      archive &step &time &dt &newton_iterations &linear_iterations
+        &line_searches &step_cuts &projections &solver_fallbacks &noise_stops
+          &held_cells &limited_boxes &active_cells &dofs &residual
+            &external_work &internal_work &stabilization_work &wall_seconds;
+    }
   };
 
   /** Sums over all points. */
@@ -66,9 +76,10 @@ namespace impm
     static std::vector<std::string>
     column_names(const Scene<dim> &scene);
 
-    /** Starts the file. */
+    /** Starts the file, or goes on with it where serialize() says: what was
+     * written since then goes. */
     void
-    open(const std::string &directory);
+    open(const std::string &directory, bool goes_on = false);
 
     /** The figures of reactions from StepProblem::end_forces(). Collective. */
     void
@@ -88,24 +99,33 @@ namespace impm
       return figures;
     }
 
-    /** The columns; the first rank has their rows if `remembers_rows`. */
-    const CsvTable &
-    table() const
+    /** The rows so far, as the file has them; on the first rank alone. */
+    CsvTable
+    table() const;
+
+    template <class Archive>
+    void
+    serialize(Archive &archive, const unsigned int /*version*/)
     {
-      return rows;
+      archive &followed &start_kinetic_energy &figures &size;
     }
 
-    bool remembers_rows = false; ///< from now on
-
   private:
-    const OutputSpec                               &output;
-    const MaterialPoints<dim>                      &points;
+    /** With its end, on disk at once. Throws SystemError. */
+    void
+    write_line(const std::string &line);
+
+    const OutputSpec              &output;
+    const MaterialPoints<dim>     &points;
+    const std::vector<std::string> names; ///< of columns
+    std::vector<double> followed; ///< by probe: the number of its point, or -1
     std::vector<std::function<double(double time)>> probes;
     std::vector<double>                             reactions;
     double                                          start_kinetic_energy;
     Figures                                         figures;
+    std::string                                     file_name;
     std::ofstream                                   file;
-    CsvTable                                        rows;
+    unsigned long size = 0; ///< of the file, in whole rows (bytes)
   };
 } // namespace impm
 

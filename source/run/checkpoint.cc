@@ -85,10 +85,10 @@ namespace impm
     largest_size(const BackgroundGrid<dim>                            &grid,
                  const std::vector<Particles::ParticleHandler<dim> *> &all)
     {
-      // Of p4est, of sizes by cell, of vectors at the nodes of a cell.
+      // Of p4est, of particles by cell, of vectors at the nodes of a cell.
       unsigned long bytes =
         100000 + grid.triangulation.n_global_active_cells() *
-                   (100 + 16 * all.size() +
+                   (500 + 16 * all.size() +
                     (grid.is_lagrangian ? 4 * sizeof(double) * dim << dim : 0));
       for (const auto *particles : all)
         bytes +=

@@ -140,8 +140,10 @@ namespace
   {
     for (const auto &[name, values] : whole.history)
       {
-        // How Newton's method got there may depend on round-off.
+        // How Newton's method got there may depend on round-off, and what is
+        // left of large figures.
         if (name == "wall_seconds" || name == "residual" ||
+            name == "transfer_loss" ||
             name.find("iterations") != std::string::npos ||
             name == "line_searches" || name == "noise_stops")
           continue;
@@ -172,10 +174,7 @@ namespace
                   const Overrides       &overrides,
                   const MakePolicy<dim> &make_policy = {})
   {
-    std::string all;
-    for (const auto &override : overrides)
-      all += override + ", ";
-    SCOPED_TRACE(all);
+    SCOPED_TRACE("..., " + overrides.back());
     const Overrides checkpoints = {"Output/Checkpoints/Interval in steps=2"};
     const auto      scene       = [&](const unsigned int n_steps) {
       return scene_from<dim>(block_scene(kind),
@@ -290,7 +289,7 @@ TEST(RestartMpi, GridThatFollowsAFace)
                      pressed + top_moves_the_grid + plastic +
                        Overrides{"Grid/Method=GIMP",
                                  "Solver/Nonlinear solver=BFGS",
-                                 "Solver/Newton tolerance=1e-6"});
+                                 "Solver/Newton tolerance=1e-12"});
 }
 
 TEST(RestartMpi, AdaptedGrid)
@@ -332,9 +331,10 @@ TEST(RestartMpi, LagrangianGridThatSticksToARigidBox)
   const auto whole = expect_restarts<2>("plane strain", box);
   EXPECT_EQ(whole.history.at("load").front(), 0.);
   EXPECT_GT(whole.history.at("load").back(), 0.);
+  expect_restarts<2>("plane strain", box + refined + with_inertia);
   expect_restarts<2>("plane strain",
-                     box + refined + with_inertia +
-                       Overrides{"Grid/Map=x + 0.1*y*y; y"});
+                     box + plastic +
+                       Overrides{"Grid/Map=x + 0.4*x*(1 - x)*y; y"});
 }
 
 TEST(RestartMpi, ReferencesWithMaxima)
@@ -348,7 +348,7 @@ TEST(RestartMpi, ReferencesWithMaxima)
                                    "Reference/u/When=largest",
                                    "Reference/f/Kind=curve",
                                    "Reference/f/Column=load",
-                                   "Reference/f/Expression=x",
+                                   "Reference/f/Expression=t",
                                    "Reference/g/Kind=probe",
                                    "Reference/g/Of=width",
                                    "Reference/g/Value=1.2"});

@@ -108,8 +108,8 @@ namespace impm
 
     /**
      * What a probe shows at a time, without its factor: collective. It follows
-     * the point `id` from now on. Throws InputError if it asks for what this
-     * scene does not have.
+     * the point `*id`, which a restart may set. Throws InputError if it asks
+     * for what this scene does not have.
      */
     template <int dim>
     std::function<double(double time)>
@@ -118,7 +118,7 @@ namespace impm
                const MaterialPoints<dim> &points,
                const RigidBodies<dim>    &rigid,
                const BackgroundGrid<dim> &grid,
-               double                    &id)
+               double                    *id)
     {
       using Kind           = ProbeSpec::Kind;
       const auto component = spec.component;
@@ -157,68 +157,69 @@ namespace impm
                                ", allowed is less than " +
                                std::to_string(field->n_components));
         }
-      id = spec.kind == Kind::point ? nearest_point(spec.position, points) : -1;
-      return [&spec, &bodies = scene.bodies, &points, component, field, &id](
-               double) {
-        if (field)
-          field->prepare();
-        const double limit    = std::numeric_limits<double>::max();
-        double       smallest = limit, largest = -limit, sum = 0, weight = 0;
-        unsigned int p = 0;
-        for (const auto &particle : points.sorted.particles)
-          {
-            const unsigned int point = p++;
-            const auto        &body =
-              bodies[static_cast<unsigned int>(points.fields(point)[0])];
-            if (spec.kind == Kind::point ?
-                  particle.get_id() != id :
-                  !spec.bodies.empty() && std::count(spec.bodies.begin(),
-                                                     spec.bodies.end(),
-                                                     body.name) == 0)
-              continue;
-            if (spec.where &&
-                !(spec.where(points.initial_position(point).begin_raw()) > 0))
-              continue;
-            double values[9] = {};
-            if (field)
-              field->evaluate(point, particle.get_location(), values);
-            double value = values[component];
-            if (spec.kind == Kind::point && spec.field == "displacement" &&
-                component < dim)
-              {
-                // From the point to the place that was asked for.
-                const auto F     = deformation_gradient(points, point);
-                const auto start = points.initial_position(point);
-                for (unsigned int d = 0; d < dim; ++d)
-                  value += (F[component][d] - (component == d ? 1 : 0)) *
-                           (spec.position[d] - start[d]);
-              }
-            if (spec.kind == Kind::extent)
-              {
-                // Half the box that the point stands for, stretched by F.
-                const auto    F = deformation_gradient(points, point);
-                const double *domain =
-                  points.fields(point) + points.layout.offset("initial_domain");
-                value = particle.get_location()[component];
-                for (unsigned int d = 0; d < dim; ++d)
-                  value += 0.5 * std::abs(F[component][d]) * domain[d];
-              }
-            smallest = std::min(smallest, value);
-            largest  = std::max(largest, value);
-            sum += value * points.initial_volume(point);
-            weight += points.initial_volume(point);
-          }
-        const auto comm = points.communicator;
-        if (spec.kind == Kind::mean)
-          return Utilities::MPI::sum(sum, comm) /
-                 Utilities::MPI::sum(weight, comm);
-        if (spec.kind == Kind::smallest)
-          return Utilities::MPI::min(smallest, comm);
-        largest = Utilities::MPI::max(largest, comm);
-        return spec.kind == Kind::spread ?
-                 largest - Utilities::MPI::min(smallest, comm) :
-                 largest;
-      };
+      if (spec.kind == Kind::point)
+        *id = nearest_point(spec.position, points);
+      return
+        [&spec, &bodies = scene.bodies, &points, component, field, id](double) {
+          if (field)
+            field->prepare();
+          const double limit    = std::numeric_limits<double>::max();
+          double       smallest = limit, largest = -limit, sum = 0, weight = 0;
+          unsigned int p = 0;
+          for (const auto &particle : points.sorted.particles)
+            {
+              const unsigned int point = p++;
+              const auto        &body =
+                bodies[static_cast<unsigned int>(points.fields(point)[0])];
+              if (spec.kind == Kind::point ?
+                    particle.get_id() != *id :
+                    !spec.bodies.empty() && std::count(spec.bodies.begin(),
+                                                       spec.bodies.end(),
+                                                       body.name) == 0)
+                continue;
+              if (spec.where &&
+                  !(spec.where(points.initial_position(point).begin_raw()) > 0))
+                continue;
+              double values[9] = {};
+              if (field)
+                field->evaluate(point, particle.get_location(), values);
+              double value = values[component];
+              if (spec.kind == Kind::point && spec.field == "displacement" &&
+                  component < dim)
+                {
+                  // From the point to the place that was asked for.
+                  const auto F     = deformation_gradient(points, point);
+                  const auto start = points.initial_position(point);
+                  for (unsigned int d = 0; d < dim; ++d)
+                    value += (F[component][d] - (component == d ? 1 : 0)) *
+                             (spec.position[d] - start[d]);
+                }
+              if (spec.kind == Kind::extent)
+                {
+                  // Half the box that the point stands for, stretched by F.
+                  const auto    F      = deformation_gradient(points, point);
+                  const double *domain = points.fields(point) +
+                                         points.layout.offset("initial_domain");
+                  value = particle.get_location()[component];
+                  for (unsigned int d = 0; d < dim; ++d)
+                    value += 0.5 * std::abs(F[component][d]) * domain[d];
+                }
+              smallest = std::min(smallest, value);
+              largest  = std::max(largest, value);
+              sum += value * points.initial_volume(point);
+              weight += points.initial_volume(point);
+            }
+          const auto comm = points.communicator;
+          if (spec.kind == Kind::mean)
+            return Utilities::MPI::sum(sum, comm) /
+                   Utilities::MPI::sum(weight, comm);
+          if (spec.kind == Kind::smallest)
+            return Utilities::MPI::min(smallest, comm);
+          largest = Utilities::MPI::max(largest, comm);
+          return spec.kind == Kind::spread ?
+                   largest - Utilities::MPI::min(smallest, comm) :
+                   largest;
+        };
     }
   } // namespace
 
@@ -292,8 +293,8 @@ namespace impm
     , start_kinetic_energy(total(points).kinetic_energy)
   {
     for (const auto &probe : scene.output.probes)
-      probes.push_back(
-        make_probe(probe, scene, points, rigid, grid, followed[probes.size()]));
+      probes.push_back(make_probe(
+        probe, scene, points, rigid, grid, &followed[probes.size()]));
   }
 
   template <int dim>
@@ -310,6 +311,9 @@ namespace impm
         return;
       }
     std::error_code error;
+    // A file that cannot be measured seems to be a very large one.
+    if (std::filesystem::file_size(file_name, error) < size)
+      throw SystemError("'" + file_name + "' lacks rows that it had");
     std::filesystem::resize_file(file_name, size, error);
     file.open(file_name, std::ios::app);
     if (error || !file)

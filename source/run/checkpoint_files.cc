@@ -46,8 +46,8 @@ namespace impm
       return crc.checksum();
     }
 
-    /** Whether the disk would take so many bytes. p4est aborts the program if
-     * it does not, without a word of the file. */
+    /** Throws SystemError if the disk does not take so many bytes: p4est would
+     * abort the program then, without a word of the file. */
     void
     require_room(const std::string &name, const unsigned long bytes)
     {

@@ -349,6 +349,7 @@ namespace impm
       {
         save_checkpoint("a signal");
         write_summary("stopped by a signal");
+        console.finish();
         throw Interruption(asked[0],
                            "after step " + std::to_string(total.step) +
                              ", which is saved; --restart goes on from there");

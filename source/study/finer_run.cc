@@ -91,6 +91,12 @@ namespace impm
                               communicator)
                 .run(task.directory, task.name, task.parameters);
             }
+          catch (const Interruption &interruption)
+            {
+              throw Interruption(interruption.signal,
+                                 "in the finer run of " + reference +
+                                   ", which will start anew");
+            }
           catch (const ComputationError &error)
             {
               throw ComputationError("the finer run of " + reference + " in " +

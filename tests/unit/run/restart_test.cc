@@ -316,6 +316,19 @@ TEST(RestartMpi, ApicDynamics)
                                        "Grid/Method=GIMP"});
 }
 
+TEST(RestartMpi, ThreeDimensions)
+{
+  expect_restarts<3>("3D",
+                     with_inertia +
+                       Overrides{"Grid/Method=GIMP",
+                                 "Grid/Upper corner=2, 1.5, 1",
+                                 "Grid/Cells=8, 6, 4",
+                                 "Bodies/block/Velocity=0.9; 0.3*sin(3*x); 0",
+                                 "Boundary conditions/bottom/Type=slip",
+                                 "Solver/Newton tolerance=1e-9",
+                                 "Time/Time step=0.1"});
+}
+
 TEST(RestartMpi, RigidPoints)
 {
   expect_restarts<2>("plane strain",

@@ -161,10 +161,9 @@ namespace impm
       archive                        &header;
       exchange(archive);
     }
-    const auto  bytes_of_state = state.str().size();
     std::string path;
     if (first)
-      path = checkpoints->begin(bytes + bytes_of_state);
+      path = checkpoints->begin(bytes + state.str().size());
     path = Utilities::MPI::broadcast(communicator, path);
     if (first)
       replace_file(path + ".state", state.str());

@@ -386,8 +386,10 @@ namespace impm
              total.step >= scene.time.largest_number_of_steps;
     };
     // A long step may have passed several.
-    const auto picture_after = [&](const double time) {
-      return interval * (std::floor(time / interval * (1 + 1e-9)) + 1);
+    const auto picture_after = [&](const double now) {
+      return interval > 0 ?
+               interval * (std::floor(now / interval * (1 + 1e-9)) + 1) :
+               0.;
     };
     double next_picture = picture_after(time);
     if (restart)

@@ -97,6 +97,7 @@ case $what in
   signal)
     make_whole
     for signal in INT:130 TERM:143; do
+      rm -rf "$output/run"
       "$program" "${scene[@]}" > "$output/said" 2>&1 &
       pid=$!
       for ((i = 0; i < 200; ++i)); do

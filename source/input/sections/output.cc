@@ -42,16 +42,17 @@ namespace impm
     void
     add_checkpoints(const Section &section, OutputSpec &output)
     {
-      section.add("Interval in steps",
-                  output.checkpoint_steps,
-                  {"0", 0},
-                  "Number of steps from a checkpoint to the next; 0: any.");
+      section.add(
+        "Interval in steps",
+        output.checkpoint_steps,
+        {"0", 0},
+        "Number of steps from a checkpoint to the next; 0: not by steps.");
       section.add("Interval in wall time",
                   output.checkpoint_seconds,
                   {"600", 0},
-                  "(s); 0: any. Where any interval is given, the end of the "
-                  "run is a checkpoint, too. A signal to stop, or a "
-                  "computation that cannot go on, makes one always.");
+                  "(s); 0: not by time. Where either interval is given, the "
+                  "end of the run is a checkpoint, too. A signal to stop, or "
+                  "a computation that cannot go on, makes one always.");
     }
 
     void

@@ -322,7 +322,7 @@ TEST(RestartMpi, ThreeDimensions)
                      with_inertia +
                        Overrides{"Grid/Method=GIMP",
                                  "Grid/Upper corner=2, 1.5, 1",
-                                 "Grid/Cells=8, 6, 4",
+                                 "Grid/Cells=4, 3, 2",
                                  "Bodies/block/Velocity=0.9; 0.3*sin(3*x); 0",
                                  "Boundary conditions/bottom/Type=slip",
                                  "Solver/Newton tolerance=1e-9",

@@ -261,9 +261,10 @@ namespace impm
           {vectors.displacement, vectors.velocity, vectors.acceleration});
       }
     exchange(archive);
-    console.message("restart from " + path + ": step " +
-                    std::to_string(total.step) +
-                    ", t = " + std::to_string(time) + " s");
+    std::ostringstream where;
+    where << "restart from " << path << ": step " << total.step
+          << ", t = " << time << " s";
+    console.message(where.str());
   }
 
   template void

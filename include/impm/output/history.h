@@ -118,7 +118,8 @@ namespace impm
     const OutputSpec              &output;
     const MaterialPoints<dim>     &points;
     const std::vector<std::string> names; ///< of columns
-    std::vector<double> followed; ///< by probe: the number of its point, or -1
+    /** By probe, which points there: the number of its point, or -1. */
+    std::vector<double>                             followed;
     std::vector<std::function<double(double time)>> probes;
     std::vector<double>                             reactions;
     double                                          start_kinetic_energy;

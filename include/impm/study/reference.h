@@ -32,13 +32,19 @@ namespace impm
     std::vector<ReferenceError>
     errors(double time, const FinerRuns &finer_runs) const;
 
+    /** By name, since a restart may have other references. */
     template <class Archive>
     void
     serialize(Archive &archive, const unsigned int /*version*/)
     {
-      for (auto &norms : largest)
-        archive &norms.value &norms.reference &norms.error &norms
-          .reference_norm;
+      std::map<std::string, Comparison> saved;
+      for (unsigned int i = 0; i < references.size(); ++i)
+        saved[references[i].name] = largest[i];
+      archive &saved;
+      for (unsigned int i = 0; i < references.size(); ++i)
+        if (const auto norms = saved.find(references[i].name);
+            norms != saved.end())
+          largest[i] = norms->second;
     }
 
   private:

@@ -10,6 +10,8 @@ namespace impm
   --set "Section/Sub/Name=value"  override an entry (repeatable)
   --output DIR        where results go (default: the file's own entry,
                       else output/<name of the prm>)
+  --restart           go on from the last checkpoint in the directory of
+                      results, with the same scene
   --check             parse, validate, print the scene, its point fields
                       and bytes per point; run nothing
   --study             run the file's Study section; with --check, list its runs
@@ -17,7 +19,8 @@ namespace impm
   --quiet | --verbose
   --version, --help
 Exit code: 0 done; 1 bad input; 2 the computation could not go on; 3 the
-system failed. Parallel: mpirun -np N impm_dealii ...
+system failed; 130, 143 stopped by SIGINT, SIGTERM, after the step and its
+checkpoint (a second signal stops at once). Parallel: mpirun -np N impm_dealii ...
 )";
 
   CommandLine
@@ -52,7 +55,7 @@ system failed. Parallel: mpirun -np N impm_dealii ...
         else if (word == "--study")
           line.study = true;
         else if (word == "--restart")
-          throw InputError("", word + " is not there yet in this version");
+          line.restart = true;
         else if (word.rfind("-", 0) == 0)
           throw InputError("", "unknown option '" + word + "'; see --help");
         else if (line.parameter_file.empty())
@@ -64,6 +67,10 @@ system failed. Parallel: mpirun -np N impm_dealii ...
       }
     if (line.answer.empty() && line.parameter_file.empty())
       throw InputError("", "no parameter file; see --help");
+    if (line.restart && line.study)
+      throw InputError("",
+                       "--restart of a --study: it keeps the runs that are "
+                       "done anyway");
     return line;
   }
 } // namespace impm

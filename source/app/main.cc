@@ -2,6 +2,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <impm/base/exceptions.h>
+#include <impm/run/signals.h>
 #include <impm/run/simulation.h>
 #include <impm/study/finer_run.h>
 #include <impm/study/study.h>
@@ -36,11 +37,13 @@ namespace
     if (directory.empty())
       directory = "output/" + name;
 
+    catch_signals();
     Simulation<dim> simulation(scene, line.verbosity, MPI_COMM_WORLD);
     simulation.describe();
     const auto finer_runs = make_finer_runs(scene.references, line, directory);
     if (!line.check)
-      simulation.run(directory, name, file.resolved({"Study"}), finer_runs);
+      simulation.run(
+        directory, name, file.resolved({"Study"}), finer_runs, line.restart);
   }
 
   void
@@ -98,6 +101,12 @@ main(int argc, char **argv)
     {
       errors << "impm_dealii: bad input: " << error.what() << std::endl;
       return 1;
+    }
+  catch (const Interruption &interruption)
+    {
+      errors << "impm_dealii: stopped by signal " << interruption.signal << ' '
+             << interruption.what() << std::endl;
+      return 128 + interruption.signal;
     }
   catch (const ComputationError &error)
     {

@@ -31,7 +31,10 @@ namespace impm
     file << content;
     file.close();
     if (!file || std::rename(temporary.c_str(), name.c_str()) != 0)
-      throw SystemError("cannot write '" + name + "'");
+      {
+        std::remove(temporary.c_str());
+        throw SystemError("cannot write '" + name + "' (disk full?)");
+      }
   }
 
   bool

@@ -1,5 +1,8 @@
 #include <impm/grid/load_balance.h>
 
+#include <algorithm>
+#include <numeric>
+
 namespace impm
 {
   using namespace dealii;
@@ -17,7 +20,9 @@ namespace impm
     : grid(grid)
     , points(points)
     , connection(grid.triangulation.signals.weight.connect(
-        [this](const CellIterator &cell, const auto) { return cost(cell); }))
+        [this](const CellIterator &cell, const auto) {
+          return imposed.empty() ? cost(cell) : imposed_cost();
+        }))
   {}
 
   template <int dim>
@@ -34,6 +39,45 @@ namespace impm
     for (const auto &child : cell->child_iterators())
       sum += cost(child);
     return sum;
+  }
+
+  template <int dim>
+  std::vector<unsigned int>
+  LoadBalance<dim>::shares() const
+  {
+    return Utilities::MPI::all_gather(
+      grid.communicator, grid.triangulation.n_locally_owned_active_cells());
+  }
+
+  template <int dim>
+  void
+  LoadBalance<dim>::impose(const std::vector<unsigned int> &shares)
+  {
+    const auto rank = Utilities::MPI::this_mpi_process(grid.communicator);
+    const auto now  = this->shares();
+    const bool fits = shares.size() == now.size() &&
+                      std::count(shares.begin(), shares.end(), 0u) == 0 &&
+                      std::accumulate(shares.begin(), shares.end(), 0u) ==
+                        std::accumulate(now.begin(), now.end(), 0u);
+    imposed   = fits ? shares : std::vector<unsigned int>();
+    next_cell = std::accumulate(now.begin(), now.begin() + rank, 0u);
+  }
+
+  template <int dim>
+  unsigned int
+  LoadBalance<dim>::imposed_cost()
+  {
+    // The first and the last cell of each rank have all of its weight, so that
+    // ranks change just where the sum passes what one of them gets.
+    const unsigned int half = 1000, cell = next_cell++;
+    unsigned int       weight = 0, begin = 0;
+    for (const unsigned int n : imposed)
+      {
+        weight +=
+          (cell == begin ? half : 0) + (cell + 1 == begin + n ? half : 0);
+        begin += n;
+      }
+    return weight;
   }
 
   template <int dim>

@@ -3,9 +3,11 @@
 #include <impm/output/history.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <iomanip>
 #include <limits>
 #include <numeric>
+#include <sstream>
 
 namespace impm
 {
@@ -125,8 +127,9 @@ namespace impm
     }
 
     /**
-     * What a probe shows at a time, without its factor: collective. Throws
-     * InputError if it asks for what this scene does not have.
+     * What a probe shows at a time, without its factor: collective. It follows
+     * the point `*id`, which a restart may set. Throws InputError if it asks
+     * for what this scene does not have.
      */
     template <int dim>
     std::function<double(double time)>
@@ -134,7 +137,8 @@ namespace impm
                const Scene<dim>          &scene,
                const MaterialPoints<dim> &points,
                const RigidBodies<dim>    &rigid,
-               const BackgroundGrid<dim> &grid)
+               const BackgroundGrid<dim> &grid,
+               double                    *id)
     {
       using Kind           = ProbeSpec::Kind;
       const auto component = spec.component;
@@ -173,17 +177,13 @@ namespace impm
                                ", allowed is less than " +
                                std::to_string(field->n_components));
         }
-      const double start_id = spec.kind == Kind::point ?
-                                nearest_point(spec.position, points, false) :
-                                -1;
+      if (spec.kind == Kind::point)
+        *id = nearest_point(spec.position, points, false);
       return
-        [&spec, &bodies = scene.bodies, &points, component, field, start_id](
-          double) {
+        [&spec, &bodies = scene.bodies, &points, component, field, id](double) {
           // Points that split or merge hand on the place.
-          const double id =
-            spec.kind == Kind::point && points.layout.find("parent") ?
-              nearest_point(spec.position, points, true) :
-              start_id;
+          if (spec.kind == Kind::point && points.layout.find("parent"))
+            *id = nearest_point(spec.position, points, true);
           if (field)
             field->prepare();
           const double limit    = std::numeric_limits<double>::max();
@@ -195,7 +195,7 @@ namespace impm
               const auto        &body =
                 bodies[static_cast<unsigned int>(points.fields(point)[0])];
               if (spec.kind == Kind::point ?
-                    particle.get_id() != id :
+                    particle.get_id() != *id :
                     !spec.bodies.empty() && std::count(spec.bodies.begin(),
                                                        spec.bodies.end(),
                                                        body.name) == 0)
@@ -311,25 +311,67 @@ namespace impm
     : output(scene.output)
     , points(points)
     , grid(grid)
+    , names(column_names(scene))
+    , followed(scene.output.probes.size(), -1)
     , reactions(scene.output.reactions.size())
     , start_kinetic_energy(total(points).kinetic_energy)
   {
-    rows.names = column_names(scene);
-    rows.columns.resize(rows.names.size());
     for (const auto &probe : scene.output.probes)
-      probes.push_back(make_probe(probe, scene, points, rigid, grid));
+      probes.push_back(make_probe(
+        probe, scene, points, rigid, grid, &followed[probes.size()]));
   }
 
   template <int dim>
   void
-  History<dim>::open(const std::string &directory)
+  History<dim>::open(const std::string &directory, const bool goes_on)
   {
     if (Utilities::MPI::this_mpi_process(points.communicator) != 0)
       return;
-    file.open(directory + "/history.csv");
-    file << join(rows.names, ",") << std::endl;
+    file_name = directory + "/history.csv";
+    if (!goes_on)
+      {
+        file.open(file_name);
+        write_line(join(names, ","));
+        return;
+      }
+    std::error_code error;
+    // A file that cannot be measured seems to be a very large one.
+    if (std::filesystem::file_size(file_name, error) < size)
+      throw SystemError("'" + file_name + "' lacks rows that it had");
+    std::filesystem::resize_file(file_name, size, error);
+    file.open(file_name, std::ios::app);
+    if (error || !file)
+      throw SystemError("cannot go on with '" + file_name + "'");
+  }
+
+  template <int dim>
+  void
+  History<dim>::write_line(const std::string &line)
+  {
+    file << line << std::endl;
     if (!file)
-      throw SystemError("cannot write '" + directory + "/history.csv'");
+      {
+        // Half a row is none.
+        std::error_code ignored;
+        std::filesystem::resize_file(file_name, size, ignored);
+        throw SystemError("cannot write '" + file_name + "' (disk full?)");
+      }
+    size += line.size() + 1;
+  }
+
+  template <int dim>
+  CsvTable
+  History<dim>::table() const
+  {
+    try
+      {
+        return read_csv_table(file_name);
+      }
+    catch (const InputError &error)
+      {
+        // On this rank alone.
+        throw SystemError(error.what());
+      }
   }
 
   template <int dim>
@@ -368,23 +410,18 @@ namespace impm
     if (Utilities::MPI::this_mpi_process(points.communicator) != 0)
       return;
 
-    const auto row = make_row(points.layout.geometry,
+    const auto         row = make_row(points.layout.geometry,
                               report,
                               n_points,
                               density,
                               totals,
                               start_kinetic_energy,
                               figures);
-    file << std::setprecision(12);
+    std::ostringstream line;
+    line << std::setprecision(12);
     for (unsigned int i = 0; i < row.size(); ++i)
-      {
-        file << (i > 0 ? "," : "") << row[i].second;
-        if (remembers_rows)
-          rows.columns[i].push_back(row[i].second);
-      }
-    file << std::endl;
-    if (!file)
-      throw SystemError("cannot write the history (disk full?)");
+      line << (i > 0 ? "," : "") << row[i].second;
+    write_line(line.str());
   }
 
   template class History<2>;

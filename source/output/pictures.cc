@@ -59,16 +59,24 @@ namespace impm
                          ".vtu");
       const auto    path = directory + "/" + pieces[rank];
       std::ofstream file(path);
-      writer.write_vtu(file);
+      try
+        {
+          writer.write_vtu(file);
+        }
+      catch (const ExcIO &)
+        {
+          // which does not name the file
+        }
       file.close();
       if (!file)
-        throw SystemError("cannot write '" + path + "'");
+        throw SystemError("cannot write '" + path + "' (disk full?)");
       if (n == 1)
         return pieces[0];
       if (rank == 0)
         {
-          std::ofstream record(directory + "/" + base + ".pvtu");
+          std::ostringstream record;
           writer.write_pvtu_record(record, pieces);
+          replace_file(directory + "/" + base + ".pvtu", record.str());
         }
       return base + ".pvtu";
     }
@@ -192,12 +200,19 @@ namespace impm
     // All the pieces are on disk before a record names them.
     MPI_Barrier(comm);
     if (Utilities::MPI::this_mpi_process(comm) == 0)
-      for (const auto &[name, times_and_names] : files)
-        {
-          std::ostringstream record;
-          DataOutBase::write_pvd_record(record, times_and_names);
-          replace_file(directory + "/" + name + ".pvd", record.str());
-        }
+      write_records(directory);
+  }
+
+  template <int dim>
+  void
+  Pictures<dim>::write_records(const std::string &directory) const
+  {
+    for (const auto &[name, times_and_names] : files)
+      {
+        std::ostringstream record;
+        DataOutBase::write_pvd_record(record, times_and_names);
+        replace_file(directory + "/" + name + ".pvd", record.str());
+      }
   }
 
   template class Pictures<2>;

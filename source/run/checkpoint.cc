@@ -1,50 +1,288 @@
+#include <deal.II/distributed/solution_transfer.h>
+
+#include <impm/base/exceptions.h>
 #include <impm/base/files.h>
+#include <impm/base/names.h>
+#include <impm/run/restart_check.h>
 #include <impm/run/simulation.h>
 
+#include <boost/archive/binary_iarchive.hpp>
+#include <boost/archive/binary_oarchive.hpp>
+#include <boost/serialization/array.hpp>
+#include <boost/serialization/map.hpp>
+#include <boost/serialization/string.hpp>
+#include <boost/serialization/utility.hpp>
+#include <boost/serialization/vector.hpp>
 #include <nlohmann/json.hpp>
 
-#include <filesystem>
+#include <sstream>
 
 namespace impm
 {
   using namespace dealii;
 
+  namespace
+  {
+    /** What a state is of, which is read and checked before all else. */
+    template <int dim>
+    struct Header
+    {
+      std::string                 parameters;
+      std::vector<std::string>    fields; ///< of the points
+      std::array<double, 2 * dim> faces;  ///< where they lie (m)
+      std::vector<unsigned int>   shares; ///< of cells, by rank
+      /** Of a Lagrangian grid: whether its nodes have a velocity. */
+      bool nodes_move;
+
+      template <class Archive>
+      void
+      serialize(Archive &archive, const unsigned int /*version*/)
+      {
+        archive &parameters &fields &faces &shares &nodes_move;
+      }
+    };
+
+    /** In the order in which they are written and read. */
+    template <int dim>
+    std::vector<Particles::ParticleHandler<dim> *>
+    all_particles(MaterialPoints<dim> &points, RigidBodies<dim> &rigid)
+    {
+      std::vector<Particles::ParticleHandler<dim> *> all = {
+        &points.sorted.particles};
+      for (const auto &body : rigid.bodies)
+        all.push_back(&body.points->particles);
+      return all;
+    }
+
+    template <int dim>
+    using NodeTransfer = parallel::distributed::SolutionTransfer<dim, Vector>;
+
+    /** Values at the nodes of a Lagrangian grid. */
+    struct NodeVectors
+    {
+      /** Zero. Collective. */
+      template <int dim>
+      explicit NodeVectors(const Discretization<dim> &discretization)
+      {
+        for (auto *vector : {&displacement, &velocity, &acceleration, &holders})
+          discretization.initialize(*vector);
+      }
+
+      /** For the transfer, or from it: with ghosts. Collective. */
+      void
+      update_ghost_values() const
+      {
+        for (const auto *vector :
+             {&displacement, &velocity, &acceleration, &holders})
+          vector->update_ghost_values();
+      }
+
+      Vector displacement, velocity, acceleration, holders;
+    };
+
+    /** More than all files of a checkpoint take. Collective. */
+    template <int dim>
+    unsigned long
+    largest_size(const BackgroundGrid<dim>                            &grid,
+                 const std::vector<Particles::ParticleHandler<dim> *> &all)
+    {
+      // Of p4est, of particles by cell, of vectors at the nodes of a cell.
+      unsigned long bytes =
+        100000 + grid.triangulation.n_global_active_cells() *
+                   (500 + 16 * all.size() +
+                    (grid.is_lagrangian ? 4 * sizeof(double) * dim << dim : 0));
+      for (const auto *particles : all)
+        bytes +=
+          particles->n_global_particles() *
+          (sizeof(double) * (2 * dim + particles->n_properties_per_particle()) +
+           sizeof(types::particle_index));
+      return bytes;
+    }
+
+    /** Of names that differ, one. */
+    void
+    require_fields(const std::vector<std::string> &saved,
+                   const std::vector<std::string> &wanted)
+    {
+      const auto lacks = [](const auto &names, const std::string &name) {
+        return std::find(names.begin(), names.end(), name) == names.end();
+      };
+      for (const auto &name : wanted)
+        if (lacks(saved, name))
+          throw InputError("",
+                           "the points of the checkpoint do not have '" + name +
+                             "', which pictures or references now ask for");
+      for (const auto &name : saved)
+        if (lacks(wanted, name))
+          throw InputError("",
+                           "the points of the checkpoint have '" + name +
+                             "', which pictures or references ask for no more");
+    }
+  } // namespace
+
+  template <int dim>
+  template <class Archive>
+  void
+  Simulation<dim>::exchange(Archive &archive)
+  {
+    double seconds    = wall_seconds();
+    auto   seconds_by = phases();
+    auto   evaluations =
+      Utilities::MPI::sum(counts.stress_evaluations, communicator);
+    archive &time &total &since_row &control &work &resampled &best_imbalance
+      &pictures &history &reference &warnings &face_holds &counts
+        .operator_applications &counts.tangents &counts
+        .solver_fallbacks &evaluations &seconds &seconds_by;
+    if (!Archive::is_loading::value)
+      return;
+    seconds_before = seconds;
+    phases_before  = seconds_by;
+    counts.stress_evaluations =
+      Utilities::MPI::this_mpi_process(communicator) == 0 ? evaluations : 0;
+  }
+
   template <int dim>
   void
-  Simulation<dim>::save_last_good_state(const std::string &reason)
+  Simulation<dim>::save_checkpoint(const std::string &reason)
   {
-    console.finish();
-    picture(false);
+    TimerOutput::Scope scope(timer, "checkpoint");
+    const auto         all   = all_particles(points, rigid);
+    const auto         bytes = largest_size(grid, all);
+    const bool first = Utilities::MPI::this_mpi_process(communicator) == 0;
 
-    const std::string folder = directory + "/checkpoint";
-    const bool  first = Utilities::MPI::this_mpi_process(communicator) == 0;
-    std::string name;
-    if (first)
-      {
-        std::filesystem::create_directories(folder);
-        std::string last;
-        std::ifstream(folder + "/last_good") >> last;
-        name = last == "a" ? "b" : "a";
-      }
-    name = Utilities::MPI::broadcast(communicator, name);
-    points.sorted.particles.prepare_for_serialization();
-    grid.triangulation.save(folder + "/" + name + ".grid");
-    if (!first)
-      return;
-    nlohmann::ordered_json json = {{"step", total.step},
-                                   {"time", time},
-                                   {"step_size", control.step_size()},
-                                   {"reason", reason}};
+    const auto &nodes = grid.nodal_state();
+    Header<dim> header{parameters,
+                       names_of(points.layout.fields()),
+                       {},
+                       balance.shares(),
+                       nodes.velocity.size() > 0};
     for (unsigned int f = 0; f < 2 * dim; ++f)
-      json["face_positions"].push_back(grid.face_position(f));
-    for (const auto &field : points.layout.fields())
-      json["fields"].push_back(field.name);
-    replace_file(folder + "/" + name + ".json", json.dump(2) + "\n");
-    replace_file(folder + "/last_good", name + "\n");
+      header.faces[f] = grid.face_position(f);
+    std::ostringstream state;
+    {
+      boost::archive::binary_oarchive archive(state);
+      archive                        &header;
+      exchange(archive);
+    }
+    std::string path;
+    if (first)
+      path = checkpoints->begin(bytes + state.str().size());
+    path = Utilities::MPI::broadcast(communicator, path);
+    if (first)
+      replace_file(path + ".state", state.str());
+
+    for (auto *particles : all)
+      particles->prepare_for_serialization();
+    const auto        discretization = grid.discretization();
+    NodeTransfer<dim> transfer(discretization->dof_handler());
+    const auto        vectors = grid.is_lagrangian ?
+                                  std::make_unique<NodeVectors>(*discretization) :
+                                  nullptr;
+    if (vectors)
+      {
+        vectors->displacement = nodes.displacement;
+        if (header.nodes_move)
+          {
+            vectors->velocity     = nodes.velocity;
+            vectors->acceleration = nodes.acceleration;
+          }
+        for (unsigned int n = 0;
+             dim * n < vectors->holders.locally_owned_size();
+             ++n)
+          vectors->holders.local_element(dim * n) = rigid.holders_of_nodes[n];
+        vectors->update_ghost_values();
+        transfer.prepare_for_serialization({&vectors->displacement,
+                                            &vectors->velocity,
+                                            &vectors->acceleration,
+                                            &vectors->holders});
+      }
+    try
+      {
+        grid.triangulation.save(path + ".grid");
+      }
+    catch (const ExceptionBase &)
+      {
+        throw SystemError("cannot write '" + path + ".grid' (disk full?)");
+      }
+    MPI_Barrier(communicator);
+    if (first)
+      checkpoints->finish(
+        {{"step", total.step}, {"time", time}, {"reason", reason}});
+    last_checkpoint = wall.wall_time();
+  }
+
+  template <int dim>
+  void
+  Simulation<dim>::load_checkpoint()
+  {
+    CheckpointFiles::Found found;
+    std::string            state;
+    if (Utilities::MPI::this_mpi_process(communicator) == 0)
+      {
+        found = checkpoints->find();
+        if (!found.path.empty())
+          state = content_of(found.path + ".state");
+      }
+    const auto path = Utilities::MPI::broadcast(communicator, found.path);
+    const auto flaw = Utilities::MPI::broadcast(communicator, found.flaw);
+    state           = Utilities::MPI::broadcast(communicator, state);
+    if (path.empty())
+      throw InputError("",
+                       "no checkpoint to restart from in '" + directory +
+                         "': " + flaw);
+    if (!flaw.empty())
+      console.message("warning: " + flaw + "; the one before it is taken");
+
+    std::istringstream              stream(state);
+    boost::archive::binary_iarchive archive(stream);
+    Header<dim>                     header;
+    archive                        &header;
+    check_restart(header.parameters, parameters);
+    require_fields(header.fields, names_of(points.layout.fields()));
+
+    grid.load(path + ".grid", header.faces);
+    for (auto *particles : all_particles(points, rigid))
+      particles->deserialize();
+    points.sort();
+    if (!grid.is_lagrangian)
+      {
+        // Sums in another order would differ by round-off.
+        balance.impose(header.shares);
+        repartition_grid(grid, points, rigid);
+        balance.impose({});
+      }
+    if (grid.is_lagrangian)
+      {
+        const auto            discretization = grid.discretization();
+        NodeTransfer<dim>     transfer(discretization->dof_handler());
+        NodeVectors           vectors(*discretization);
+        std::vector<Vector *> all = {&vectors.displacement,
+                                     &vectors.velocity,
+                                     &vectors.acceleration,
+                                     &vectors.holders};
+        transfer.deserialize(all);
+        vectors.update_ghost_values();
+        if (!header.nodes_move)
+          vectors.velocity = vectors.acceleration = Vector();
+        rigid.holders_of_nodes.resize(discretization->node_positions.size());
+        for (unsigned int n = 0; n < rigid.holders_of_nodes.size(); ++n)
+          rigid.holders_of_nodes[n] = vectors.holders.local_element(dim * n);
+        grid.set_nodal_state(
+          {vectors.displacement, vectors.velocity, vectors.acceleration});
+      }
+    exchange(archive);
+    std::ostringstream where;
+    where << "restart from " << path << ": step " << total.step
+          << ", t = " << time << " s";
+    console.message(where.str());
   }
 
   template void
-  Simulation<2>::save_last_good_state(const std::string &);
+  Simulation<2>::save_checkpoint(const std::string &);
   template void
-  Simulation<3>::save_last_good_state(const std::string &);
+  Simulation<3>::save_checkpoint(const std::string &);
+  template void
+  Simulation<2>::load_checkpoint();
+  template void
+  Simulation<3>::load_checkpoint();
 } // namespace impm

@@ -6,12 +6,13 @@
 #include <impm/footprints/transfer.h>
 #include <impm/output/summary.h>
 #include <impm/run/motion_limits.h>
+#include <impm/run/run_directory.h>
+#include <impm/run/signals.h>
 #include <impm/run/simulation.h>
 #include <impm/scene/scene.h>
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <sstream>
 
 namespace impm
@@ -243,7 +244,7 @@ namespace impm
     commit();
     control.accept();
     report.time         = time;
-    report.wall_seconds = wall.wall_time();
+    report.wall_seconds = wall_seconds();
     total.append(report);
   }
 
@@ -253,13 +254,15 @@ namespace impm
   {
     TimerOutput::Scope scope(timer, "move points and grid");
     const double       end = time + report.dt;
+    is_between_steps       = false;
     result                 = problem->end_motion(result.increment);
     advance_points(*problem, result, scene.time, points);
     policy->advance(grid, result, time, end);
     points.sort();
     rigid.move(time, end);
     resample();
-    time = end;
+    time             = end;
+    is_between_steps = true;
   }
 
   template <int dim>
@@ -274,8 +277,7 @@ namespace impm
 
   template <int dim>
   void
-  Simulation<dim>::write_summary(const std::string &scene_name,
-                                 const std::string &status,
+  Simulation<dim>::write_summary(const std::string &status,
                                  const FinerRuns   &finer_runs)
   {
     RunSummary summary;
@@ -302,9 +304,9 @@ namespace impm
                                {"operator_applications", counts.operator_applications}};
     summary.figures         = history.last_figures();
     summary.points_per_cell = history.last_density();
-    summary.phases       = timer.get_summary_data(TimerOutput::total_wall_time);
-    summary.wall_seconds = wall.wall_time();
-    summary.warnings     = warnings.list();
+    summary.phases          = phases();
+    summary.wall_seconds    = wall_seconds();
+    summary.warnings        = warnings.list();
     if (status == "done")
       summary.errors = reference.errors(time, finer_runs);
     summary.write(directory, communicator);
@@ -363,7 +365,7 @@ namespace impm
 
   template <int dim>
   void
-  Simulation<dim>::write_row(const StepReport &since_row)
+  Simulation<dim>::write_row()
   {
     history.write(since_row);
     if (history.last_density().smallest < 1)
@@ -384,6 +386,56 @@ namespace impm
                  scene.time.end,
                  points.sorted.n_global(),
                  history.last_figures());
+    since_row = StepReport();
+  }
+
+  template <int dim>
+  double
+  Simulation<dim>::wall_seconds() const
+  {
+    return seconds_before + wall.wall_time();
+  }
+
+  template <int dim>
+  std::map<std::string, double>
+  Simulation<dim>::phases() const
+  {
+    auto all = phases_before;
+    for (const auto &[name, seconds] :
+         timer.get_summary_data(TimerOutput::total_wall_time))
+      all[name] += seconds;
+    return all;
+  }
+
+  template <int dim>
+  void
+  Simulation<dim>::pause(const bool is_last)
+  {
+    const auto &output = scene.output;
+    const bool  by_steps =
+      output.checkpoint_steps > 0 && report.step % output.checkpoint_steps == 0;
+    const bool by_time =
+      output.checkpoint_seconds > 0 &&
+      wall.wall_time() - last_checkpoint >= output.checkpoint_seconds;
+    // Ranks may differ in both.
+    std::vector<int> asked = {caught_signal(), by_time};
+    Utilities::MPI::max(asked, communicator, asked);
+    if (is_last)
+      {
+        if (output.checkpoint_steps > 0 || output.checkpoint_seconds > 0)
+          save_checkpoint("the end");
+      }
+    else if (asked[0] > 0)
+      {
+        save_checkpoint("a signal");
+        write_summary("stopped by a signal");
+        console.finish();
+        throw Interruption(asked[0],
+                           "after step " + std::to_string(total.step) +
+                             ", which is saved; --restart goes on from there");
+      }
+    else if (by_steps || asked[1] > 0)
+      save_checkpoint("the interval");
   }
 
   template <int dim>
@@ -391,31 +443,49 @@ namespace impm
   Simulation<dim>::run(const std::string &directory,
                        const std::string &scene_name,
                        const std::string &parameters,
-                       const FinerRuns   &finer_runs)
+                       const FinerRuns   &finer_runs,
+                       const bool         restart)
   {
-    this->directory = directory;
-    if (Utilities::MPI::this_mpi_process(communicator) == 0)
-      {
-        std::error_code error;
-        std::filesystem::create_directories(directory, error);
-        if (error)
-          throw SystemError("cannot make the directory '" + directory +
-                            "': " + error.message());
-        replace_file(directory + "/parameters.prm", parameters);
-      }
-    MPI_Barrier(communicator);
+    this->directory  = directory;
+    this->scene_name = scene_name;
+    this->parameters = parameters;
+    const bool first = Utilities::MPI::this_mpi_process(communicator) == 0;
     wall.restart();
-    history.open(directory);
-    warn_of_instability();
-    if (scene.output.pictures)
-      picture(false);
-    const double interval     = scene.output.picture_interval;
-    double       next_picture = interval;
-    const auto   is_over      = [&]() {
+    checkpoints = std::make_unique<CheckpointFiles>(directory);
+    const RunDirectory place(directory, communicator, !restart);
+    if (restart)
+      load_checkpoint();
+    else
+      place.clear();
+    if (first)
+      replace_file(directory + "/parameters.prm", parameters);
+    history.open(directory, restart);
+    const double interval = scene.output.picture_interval;
+    const auto   is_over  = [&]() {
       return time >= scene.time.end * (1 - 1e-12) ||
              total.step >= scene.time.largest_number_of_steps;
     };
-    StepReport since_row;
+    // A long step may have passed several.
+    const auto picture_after = [&](const double now) {
+      return interval > 0 ?
+               interval * (std::floor(now / interval * (1 + 1e-9)) + 1) :
+               0.;
+    };
+    double next_picture = picture_after(time);
+    if (restart)
+      {
+        if (first)
+          pictures.write_records(directory);
+        if (is_over())
+          console.message("the run is done; a later end time, or more steps, "
+                          "would let it go on");
+      }
+    else
+      {
+        warn_of_instability();
+        if (scene.output.pictures)
+          picture(false);
+      }
     try
       {
         while (!is_over())
@@ -424,30 +494,29 @@ namespace impm
             since_row.append(report);
             const bool last = is_over();
             if (last || report.step % scene.output.row_steps == 0)
-              {
-                write_row(since_row);
-                since_row = StepReport();
-              }
+              write_row();
             const bool due = interval > 0 ?
                                time >= next_picture * (1 - 1e-9) :
                                report.step % scene.output.picture_steps == 0;
             if (scene.output.pictures && (due || last))
               {
                 picture(true);
-                // A long step may have passed several.
-                if (interval > 0)
-                  next_picture =
-                    interval * (std::floor(time / interval * (1 + 1e-9)) + 1);
+                next_picture = picture_after(time);
               }
+            pause(last);
           }
       }
     catch (const ComputationError &error)
       {
-        save_last_good_state(error.what());
-        write_summary(scene_name, error.what(), {});
+        console.finish();
+        picture(false);
+        // What a step has left half done is nothing to go on from.
+        if (is_between_steps)
+          save_checkpoint(error.what());
+        write_summary(error.what());
         throw;
       }
-    write_summary(scene_name, "done", finer_runs);
+    write_summary("done", finer_runs);
   }
 
   template class Simulation<2>;

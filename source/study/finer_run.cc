@@ -5,7 +5,6 @@
 #include <impm/study/study_report.h>
 
 #include <algorithm>
-#include <filesystem>
 
 namespace impm
 {
@@ -87,14 +86,16 @@ namespace impm
           try
             {
               console.message(reference + ": finer run in " + task.directory);
-              // Or an old one would vouch for a run that is interrupted.
-              std::error_code none;
-              if (first)
-                std::filesystem::remove(task.directory + "/summary.json", none);
               Simulation<dim>(task.scene,
                               CommandLine::Verbosity::quiet,
                               communicator)
                 .run(task.directory, task.name, task.parameters);
+            }
+          catch (const Interruption &interruption)
+            {
+              throw Interruption(interruption.signal,
+                                 "in the finer run of " + reference +
+                                   ", which will start anew");
             }
           catch (const ComputationError &error)
             {

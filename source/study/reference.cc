@@ -220,7 +220,7 @@ namespace impm
   template <int dim>
   Reference<dim>::Reference(const Scene<dim>          &scene,
                             const MaterialPoints<dim> &points,
-                            History<dim>              &history)
+                            const History<dim>        &history)
     : references(scene.references)
     , points(points)
     , history(history)
@@ -231,10 +231,9 @@ namespace impm
       if (references[i].kind == ReferenceKind::field)
         compare_field[i] = make_field_comparison(references[i], scene, points);
       else
-        {
-          check_columns(references[i], history.table().names, scene.time.end);
-          history.remembers_rows = true;
-        }
+        check_columns(references[i],
+                      History<dim>::column_names(scene),
+                      scene.time.end);
   }
 
   template <int dim>
@@ -272,6 +271,7 @@ namespace impm
     const bool first =
       Utilities::MPI::this_mpi_process(points.communicator) == 0;
     std::vector<ReferenceError> records;
+    std::optional<CsvTable>     rows;
     for (unsigned int i = 0; i < references.size(); ++i)
       {
         const auto &spec = references[i];
@@ -279,9 +279,13 @@ namespace impm
           records.push_back(make_record(
             spec, "field", spec.largest ? largest[i] : compare_field[i](time)));
         else if (first)
-          for (const auto &column : spec.columns)
-            records.push_back(
-              compare_column(spec, column, history.table(), finer_runs));
+          {
+            if (!rows)
+              rows = history.table();
+            for (const auto &column : spec.columns)
+              records.push_back(
+                compare_column(spec, column, *rows, finer_runs));
+          }
       }
     return records;
   }

@@ -34,6 +34,18 @@ namespace impm
     using std::runtime_error::runtime_error;
   };
 
+  /** A signal has asked the run to stop, and it is saved: exit code 128 + the
+   * signal's number. Thrown on every rank alike. */
+  struct Interruption : std::runtime_error
+  {
+    Interruption(const int signal, const std::string &message)
+      : std::runtime_error(message)
+      , signal(signal)
+    {}
+
+    const int signal;
+  };
+
   /** A linear solve has nothing to go on with: Newton's method gives up. */
   struct LinearizationError : std::runtime_error
   {

@@ -66,6 +66,15 @@ namespace impm
     void
     move_face(unsigned int face, double position);
 
+    /**
+     * Takes the cells that `triangulation.save()` has left in a file, and
+     * stretches them so that the faces lie at `faces` (m). Particles and
+     * nodal_state() are to be read from there next. Collective.
+     */
+    void
+    load(const std::string                 &file_name,
+         const std::array<double, 2 * dim> &faces);
+
     /** Where a face lies along its normal (m). */
     double
     face_position(const unsigned int face) const
@@ -91,6 +100,10 @@ namespace impm
       return state;
     }
 
+    /** After load(), with ghosts. Collective. */
+    void
+    set_nodal_state(const NodalState &new_state);
+
     const MPI_Comm                                    communicator;
     dealii::parallel::distributed::Triangulation<dim> triangulation;
     const bool                                        is_lagrangian;
@@ -104,6 +117,22 @@ namespace impm
     void
     renumber();
 
+    /** As few cells as give those that were asked for, since every rank keeps
+     * all of them; returns how often each has to be split. */
+    int
+    make_coarse_cells();
+
+    /**
+     * Puts every vertex, which stands there but for round-off if the grid
+     * reaches from one corner to another, to its fraction of the grid's extent:
+     * where it is must not depend on how it came there. Then maps it.
+     */
+    void
+    place_vertices(const dealii::Point<dim> &lower,
+                   const dealii::Point<dim> &upper);
+
+    const GridSpec<dim>                        spec;
+    std::vector<unsigned int>                  coarse_cells; ///< by axis
     dealii::Point<dim>                         lower_corner, upper_corner;
     int                                        base_level = 0;
     NodalState                                 state;

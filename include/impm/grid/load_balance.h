@@ -22,6 +22,15 @@ namespace impm
     double
     imbalance() const;
 
+    /** Number of cells of each rank. Collective. */
+    std::vector<unsigned int>
+    shares() const;
+
+    /** From now on ranks get these numbers of cells in the order in which p4est
+     * keeps them, if each gets some; as they cost if empty. Collective. */
+    void
+    impose(const std::vector<unsigned int> &shares);
+
   private:
     using CellIterator = typename dealii::Triangulation<dim>::cell_iterator;
 
@@ -29,8 +38,14 @@ namespace impm
     unsigned int
     cost(const CellIterator &cell) const;
 
+    /** Of the next cell, in the order of p4est, when shares are imposed. */
+    unsigned int
+    imposed_cost();
+
     const BackgroundGrid<dim>         &grid;
     const MaterialPoints<dim>         &points;
+    std::vector<unsigned int>          imposed;
+    unsigned int                       next_cell = 0;
     boost::signals2::scoped_connection connection;
   };
 } // namespace impm

@@ -37,6 +37,18 @@ namespace impm
     /** Goes on to a later step; counts add up. */
     void
     append(const StepReport &next);
+
+    template <class Archive>
+    void
+    serialize(Archive &archive, const unsigned int /*version*/)
+    {
+      archive &step &time &dt &newton_iterations &linear_iterations
+        &line_searches &step_cuts &projections &solver_fallbacks &noise_stops
+          &held_cells &limited_boxes &active_cells &dofs &residual
+            &external_work &internal_work &stabilization_work &splits &merges
+              &resampling_kinetic_energy &resampling_internal_energy &imbalance
+                &wall_seconds;
+    }
   };
 
   /** Sums over all points. */
@@ -71,9 +83,10 @@ namespace impm
     static std::vector<std::string>
     column_names(const Scene<dim> &scene);
 
-    /** Starts the file. */
+    /** Starts the file, or goes on with it where serialize() says: what was
+     * written since then goes. */
     void
-    open(const std::string &directory);
+    open(const std::string &directory, bool goes_on = false);
 
     /** The figures of reactions from StepProblem::end_forces(). Collective. */
     void
@@ -93,11 +106,15 @@ namespace impm
       return figures;
     }
 
-    /** The columns; the first rank has their rows if `remembers_rows`. */
-    const CsvTable &
-    table() const
+    /** The rows so far, as the file has them; on the first rank alone. */
+    CsvTable
+    table() const;
+
+    template <class Archive>
+    void
+    serialize(Archive &archive, const unsigned int /*version*/)
     {
-      return rows;
+      archive &followed &start_kinetic_energy &figures &density &size;
     }
 
     /** Of the last row. */
@@ -107,19 +124,25 @@ namespace impm
       return density;
     }
 
-    bool remembers_rows = false; ///< from now on
-
   private:
-    const OutputSpec                               &output;
-    const MaterialPoints<dim>                      &points;
-    const BackgroundGrid<dim>                      &grid;
-    PointsPerCell                                   density;
+    /** With its end, on disk at once. Throws SystemError. */
+    void
+    write_line(const std::string &line);
+
+    const OutputSpec              &output;
+    const MaterialPoints<dim>     &points;
+    const BackgroundGrid<dim>     &grid;
+    PointsPerCell                  density;
+    const std::vector<std::string> names; ///< of columns
+    /** By probe, which points there: the number of its point, or -1. */
+    std::vector<double>                             followed;
     std::vector<std::function<double(double time)>> probes;
     std::vector<double>                             reactions;
     double                                          start_kinetic_energy;
     Figures                                         figures;
+    std::string                                     file_name;
     std::ofstream                                   file;
-    CsvTable                                        rows;
+    unsigned long size = 0; ///< of the file, in whole rows (bytes)
   };
 } // namespace impm
 

@@ -32,6 +32,17 @@ namespace impm
     void
     write(const std::string &directory, double time, const Vector *u);
 
+    /** The PVD files of the pictures so far; for the first rank. */
+    void
+    write_records(const std::string &directory) const;
+
+    template <class Archive>
+    void
+    serialize(Archive &archive, const unsigned int /*version*/)
+    {
+      archive &n_written &files;
+    }
+
   private:
     const MaterialPoints<dim>   &points;
     const RigidBodies<dim>      &rigid;

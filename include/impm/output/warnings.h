@@ -1,6 +1,7 @@
 #ifndef impm_output_warnings_h
 #define impm_output_warnings_h
 
+#include <algorithm>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -51,11 +52,34 @@ namespace impm
       return all;
     }
 
+    /** Without those of the input, which a restart reads again. */
+    template <class Archive>
+    void
+    serialize(Archive &archive, const unsigned int /*version*/)
+    {
+      const auto           first = std::find_if(warnings.begin(),
+                                      warnings.end(),
+                                      [](const Warning &warning) {
+                                        return !warning.kind.empty();
+                                      });
+      std::vector<Warning> of_run(first, warnings.end());
+      archive             &of_run;
+      warnings.erase(first, warnings.end());
+      warnings.insert(warnings.end(), of_run.begin(), of_run.end());
+    }
+
   private:
     struct Warning
     {
       std::string  kind, text; ///< no kind: of the input
       unsigned int count;
+
+      template <class Archive>
+      void
+      serialize(Archive &archive, const unsigned int /*version*/)
+      {
+        archive &kind &text &count;
+      }
     };
     std::vector<Warning> warnings;
   };

@@ -12,6 +12,13 @@ namespace impm
     double       kinetic_energy  = 0; ///< gained (J)
     double       internal_energy = 0; ///< stored or dissipated, gained (J)
 
+    template <class Archive>
+    void
+    serialize(Archive &archive, const unsigned int /*version*/)
+    {
+      archive &splits &merges &kinetic_energy &internal_energy;
+    }
+
     void
     append(const PointChanges &next)
     {
@@ -69,6 +76,13 @@ namespace impm
   struct PointsPerCell
   {
     double smallest = 0, mean = 0;
+
+    template <class Archive>
+    void
+    serialize(Archive &archive, const unsigned int /*version*/)
+    {
+      archive &smallest &mean;
+    }
   };
 
   /** "at least 3.5, 4 in the mean" */

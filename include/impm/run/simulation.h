@@ -10,6 +10,7 @@
 #include <impm/output/history.h>
 #include <impm/output/pictures.h>
 #include <impm/output/warnings.h>
+#include <impm/run/checkpoint_files.h>
 #include <impm/run/solve_step.h>
 #include <impm/run/work_done.h>
 #include <impm/study/reference.h>
@@ -42,14 +43,18 @@ namespace impm
 
     /**
      * Runs to the end and writes into a directory, with the resolved
-     * parameters. Throws ComputationError after it has saved the last good
-     * state. The first rank compares with finer runs. Collective.
+     * parameters: from the start, in place of what an older run has left there,
+     * or from its last checkpoint on. Throws ComputationError or Interruption
+     * after it has saved the last good state, InputError if another run is in
+     * the directory, or its checkpoint is none to restart from. The first rank
+     * compares with finer runs. Collective.
      */
     void
     run(const std::string &directory,
         const std::string &scene_name,
         const std::string &parameters,
-        const FinerRuns   &finer_runs = {});
+        const FinerRuns   &finer_runs = {},
+        bool               restart    = false);
 
   private:
     void
@@ -94,23 +99,41 @@ namespace impm
 
     /** What is due once a row of the history. Collective. */
     void
-    write_row(const StepReport &since_row);
+    write_row();
 
     void
     picture(bool grid_has_increment);
 
-    /**
-     * A picture, and points, grid and state in directory/checkpoint: in one of
-     * two places in turn, and the file last_good names the new one once it is
-     * complete.
+    /** All that outlives a step. Collective. */
+    void
+    save_checkpoint(const std::string &reason);
+
+    /** Throws InputError if there is none, or the scene is another. Collective.
      */
     void
-    save_last_good_state(const std::string &reason);
+    load_checkpoint();
+
+    /** Writes to an archive, or reads from it, all but grid and points.
+     * Collective. */
+    template <class Archive>
+    void
+    exchange(Archive &archive);
+
+    /** When a step is complete: saves what is due, and throws Interruption if
+     * a signal has come. Collective. */
+    void
+    pause(bool is_last);
+
+    /** Since the start, the time before a restart included (s). */
+    double
+    wall_seconds() const;
+
+    /** Wall time by phase, likewise (s). */
+    std::map<std::string, double>
+    phases() const;
 
     void
-    write_summary(const std::string &scene_name,
-                  const std::string &status,
-                  const FinerRuns   &finer_runs);
+    write_summary(const std::string &status, const FinerRuns &finer_runs = {});
 
     const Scene<dim>    scene;
     const MPI_Comm      communicator;
@@ -121,7 +144,7 @@ namespace impm
     const std::unique_ptr<GridPolicy<dim>> policy;
     MaterialPoints<dim>                    points;
     RigidBodies<dim>                       rigid;
-    const LoadBalance<dim>                 balance;
+    LoadBalance<dim>                       balance;
     double      best_imbalance = 1; ///< that could be reached the last time
     double      time           = 0;
     StepControl control;
@@ -141,9 +164,16 @@ namespace impm
     Warnings                  warnings;
     std::array<bool, 2 * dim> face_holds{}; ///< material, in the last step
     dealii::Timer             wall;
-    std::string               directory;
+    std::string               directory, scene_name, parameters;
     StepReport                report; ///< of the step that is being made
     StepReport                total;  ///< of all that are completed
+    StepReport                since_row;
+    bool                      is_between_steps = true;
+
+    std::unique_ptr<CheckpointFiles> checkpoints;
+    double                           last_checkpoint = 0; ///< (s) of `wall`
+    double                           seconds_before  = 0; ///< the restart
+    std::map<std::string, double>    phases_before;       ///< the restart
   };
 } // namespace impm
 

@@ -28,6 +28,13 @@ namespace impm
     void
     add(const StepProblem<dim> &problem, const Vector &u, const Vector &forces);
 
+    template <class Archive>
+    void
+    serialize(Archive &archive, const unsigned int /*version*/)
+    {
+      archive &external &internal &stabilization &last_forces;
+    }
+
     double external      = 0; ///< (J)
     double internal      = 0; ///< (J)
     double stabilization = 0; ///< by ghost penalty and holding (J)

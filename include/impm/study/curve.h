@@ -59,6 +59,13 @@ namespace impm
     double value = not_a_number, reference = not_a_number;
     double error          = not_a_number; ///< norm of the difference
     double reference_norm = not_a_number;
+
+    template <class Archive>
+    void
+    serialize(Archive &archive, const unsigned int /*version*/)
+    {
+      archive &value &reference &error &reference_norm;
+    }
   };
 
   /**

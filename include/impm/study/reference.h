@@ -13,12 +13,12 @@ namespace impm
   {
   public:
     /**
-     * Makes the history remember what is wanted of it. Throws InputError for
-     * fields, bodies, columns and times that this scene does not have.
+     * Throws InputError for fields, bodies, columns and times that this scene
+     * does not have.
      */
     Reference(const Scene<dim>          &scene,
               const MaterialPoints<dim> &points,
-              History<dim>              &history);
+              const History<dim>        &history);
 
     /** Whether some error is the largest over the rows of the history. */
     bool
@@ -31,6 +31,21 @@ namespace impm
     /** The errors at the end of the run; on the first rank. Collective. */
     std::vector<ReferenceError>
     errors(double time, const FinerRuns &finer_runs) const;
+
+    /** By name, since a restart may have other references. */
+    template <class Archive>
+    void
+    serialize(Archive &archive, const unsigned int /*version*/)
+    {
+      std::map<std::string, Comparison> saved;
+      for (unsigned int i = 0; i < references.size(); ++i)
+        saved[references[i].name] = largest[i];
+      archive &saved;
+      for (unsigned int i = 0; i < references.size(); ++i)
+        if (const auto norms = saved.find(references[i].name);
+            norms != saved.end())
+          largest[i] = norms->second;
+    }
 
   private:
     const std::vector<ReferenceSpec<dim>> &references;

@@ -72,6 +72,18 @@ namespace impm
       return size;
     }
 
+    /** In units of its own if steps are now counted in others. */
+    template <class Archive>
+    void
+    serialize(Archive &archive, const unsigned int /*version*/)
+    {
+      bool             by_cfl = spec.cfl_number > 0;
+      double           saved  = size;
+      archive &by_cfl &saved;
+      if (by_cfl == (spec.cfl_number > 0))
+        size = std::min(saved, spec.largest_step);
+    }
+
   private:
     const TimeSpec &spec;
     double          size;

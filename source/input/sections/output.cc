@@ -40,6 +40,22 @@ namespace impm
     }
 
     void
+    add_checkpoints(const Section &section, OutputSpec &output)
+    {
+      section.add(
+        "Interval in steps",
+        output.checkpoint_steps,
+        {"0", 0},
+        "Number of steps from a checkpoint to the next; 0: not by steps.");
+      section.add("Interval in wall time",
+                  output.checkpoint_seconds,
+                  {"600", 0},
+                  "(s); 0: not by time. Where either interval is given, the "
+                  "end of the run is a checkpoint, too. A signal to stop, or "
+                  "a computation that cannot go on, makes one always.");
+    }
+
+    void
     add_point_fields(const Section &section, OutputSpec &output, const int dim)
     {
       section.add("Point fields",
@@ -200,6 +216,7 @@ namespace impm
                 "any case. Newton and linear iterations, line searches, step "
                 "cuts, tangent projections, solver fallbacks and noise stops "
                 "are sums over the steps since the row before.");
+    add_checkpoints(section.subsection("Checkpoints"), output);
     add_point_fields(section, output, dim);
     const std::string what =
       "Names of columns of the history, each with a subsection.";

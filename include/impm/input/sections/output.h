@@ -47,11 +47,14 @@ namespace impm
 
   struct OutputSpec
   {
-    std::string               directory;
-    bool                      pictures;
-    double                    picture_interval = 0; ///< 0: by picture_steps
-    unsigned int              picture_steps    = 1;
-    unsigned int              row_steps; ///< between rows of history
+    std::string  directory;
+    bool         pictures;
+    double       picture_interval = 0; ///< 0: by picture_steps
+    unsigned int picture_steps    = 1;
+    unsigned int row_steps; ///< between rows of history
+    // Between checkpoints; 0: none for that reason.
+    unsigned int              checkpoint_steps   = 0;
+    double                    checkpoint_seconds = 0; ///< of wall time
     std::vector<std::string>  point_fields;
     double                    fringe_number = 0; ///< 0: no field has fringes
     std::vector<ProbeSpec>    probes;

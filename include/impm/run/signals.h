@@ -1,0 +1,18 @@
+#ifndef impm_run_signals_h
+#define impm_run_signals_h
+
+namespace impm
+{
+  /**
+   * From now on SIGINT and SIGTERM, the next time, do no more than be there
+   * for caught_signal(); the second time they end the program.
+   */
+  void
+  catch_signals();
+
+  /** The number of the signal that this process has got, or 0. */
+  int
+  caught_signal();
+} // namespace impm
+
+#endif

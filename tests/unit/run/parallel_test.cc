@@ -31,6 +31,7 @@ namespace
       {
         // How Newton's method got there may depend on round-off.
         if (name == "wall_seconds" || name == "residual" ||
+            name == "imbalance" ||
             name.find("iterations") != std::string::npos ||
             name == "line_searches" || name == "noise_stops")
           continue;

@@ -144,7 +144,7 @@ namespace
         // How Newton's method got there may depend on round-off, and what is
         // left of large figures.
         if (name == "wall_seconds" || name == "residual" ||
-            name == "transfer_loss" ||
+            name == "imbalance" || name == "transfer_loss" ||
             name.find("iterations") != std::string::npos ||
             name == "line_searches" || name == "noise_stops")
           continue;

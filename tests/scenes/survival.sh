@@ -3,9 +3,11 @@
 set -um # else what is in the background ignores SIGINT
 program=$1 scenes=$2 output=$3 what=$4
 
-# The upsetting, a checkpoint at every step, pictures at every tenth.
-scene=("$scenes/upsetting.prm" --quiet --output "$output/run" --set
-  "Output/Checkpoints/Interval in steps=1")
+# The upsetting on a coarse grid, a checkpoint at every step, pictures at every
+# tenth.
+scene=("$scenes/upsetting.prm" --quiet --output "$output/run"
+  --set "Output/Checkpoints/Interval in steps=1"
+  --set "Grid/Adaptation/Highest level=0" --set "Time/Time step=1e-4")
 
 fail()
 {
@@ -170,7 +172,8 @@ case $what in
     run 1 --restart
     says "another run writes into the directory"
     kill -CONT "$pid"
-    wait "$pid" || fail "is disturbed"
+    # Job control reports the stop first.
+    wait "$pid" || wait "$pid" || fail "is disturbed"
     ;;
   anew) # A new run removes what is its own, and nothing else.
     run 0 --set "Time/End time=2e-3"

@@ -2,10 +2,10 @@
 """Runs the upsetting on grids of 1, 0.5 and 0.25 mm and prints, as Markdown,
 load and radius at 15, 30, 45 and 60 % beside what they cost.
 
-usage: contrib/upsetting_table.py [NAME OF A SCENE [CELLS IN r AND z AT 1 mm]]
+usage: contrib/upsetting_table.py [SCENE [CELLS IN r AND z AT 1 mm [OVERRIDE...]]]
 
     contrib/upsetting_table.py upsetting 24 15
-    contrib/upsetting_table.py upsetting_rigid_points 24 18
+    contrib/upsetting_table.py upsetting_rigid_points 24 18 "Time/Time step=1e-5"
 """
 
 import csv
@@ -32,7 +32,7 @@ def interpolate(rows, column, travel):
     return float("nan")
 
 
-def main(scene="upsetting", cells_r="24", cells_z="15"):
+def main(scene="upsetting", cells_r="24", cells_z="15", *overrides):
     heads = [f"{mark}: kN, mm" for mark in marks]
     print("| grid | " + " | ".join(heads) + " | steps | Newton a step | cuts | seconds |")
     print("|---" * (len(heads) + 5) + "|")
@@ -50,6 +50,7 @@ def main(scene="upsetting", cells_r="24", cells_z="15"):
                 f"Grid/Cells={cells}",
                 "--set",
                 "Output/Pictures=false",
+                *(part for override in overrides for part in ("--set", override)),
             ],
             check=True,
         )

@@ -19,9 +19,10 @@ namespace impm
                                       const MPI_Comm       communicator)
     : communicator(communicator)
     // Cells are numbered by the cells that there are, not by those that there
-    // were, so that a grid from a checkpoint is the same.
+    // were, so that a grid from a checkpoint is the same. Levels are as p4est
+    // wants them, so that it has no flags to take back.
     , triangulation(communicator,
-                    Triangulation<dim>::none,
+                    Triangulation<dim>::limit_level_difference_at_vertices,
                     parallel::distributed::Triangulation<
                       dim>::mesh_reconstruction_after_repartitioning)
     , is_lagrangian(spec.is_lagrangian())

@@ -125,14 +125,18 @@ namespace impm
   Simulation<dim>::adapt()
   {
     TimerOutput::Scope scope(timer, "adapt grid and points");
+    bool               goes_on = true;
     for (unsigned int i = 0;
-         i < policy->largest_number_of_rounds() &&
+         goes_on && i < policy->largest_number_of_rounds() &&
          policy->flag_cells(grid, points, rigid, {time, total.step, i});
          ++i)
       {
+        const auto n = grid.triangulation.n_global_active_cells();
         problem.reset();
         adapt_grid(grid, points, rigid);
         resample();
+        // The levels may have to stay as they are beside others.
+        goes_on = grid.triangulation.n_global_active_cells() != n;
       }
     report.imbalance = balance.imbalance();
     if (!grid.is_lagrangian &&

@@ -1,0 +1,201 @@
+#include <impm/balance/terms/loads.h>
+#include <impm/output/summary.h>
+#include <impm/run/simulation.h>
+
+#include <algorithm>
+#include <sstream>
+
+// What a run says of itself.
+namespace impm
+{
+  using namespace dealii;
+
+  template <int dim>
+  void
+  Simulation<dim>::describe()
+  {
+    std::ostringstream text;
+    text << (scene.general.title.empty() ? "scene" : scene.general.title)
+         << '\n'
+         << "  grid: " << grid.triangulation.n_global_active_cells()
+         << " cells, " << grid.discretization()->dof_handler().n_dofs()
+         << " unknowns\n"
+         << "  points: " << points.sorted.n_global() << ", a cell "
+         << to_string(points_per_cell(grid, points)) << '\n';
+    const auto counts =
+      count_points_under_tractions(scene.loads.tractions, points);
+    for (unsigned int t = 0; t < counts.size(); ++t)
+      text << "  traction " << scene.loads.tractions[t].name << ": on "
+           << counts[t] << " points\n";
+    text << "  fields of a point:\n";
+    for (const auto &field : points.layout.fields())
+      text << "    " << field.name << " (" << field.n_components << ")\n";
+    text << "  bytes per point: " << points.bytes_per_point();
+    console.message(text.str());
+  }
+
+  template <int dim>
+  void
+  Simulation<dim>::write_summary(const std::string &status,
+                                 const FinerRuns   &finer_runs)
+  {
+    RunSummary summary;
+    summary.scene           = scene_name;
+    summary.status          = status;
+    summary.dim             = dim;
+    summary.points          = points.sorted.n_global();
+    summary.bytes_per_point = points.bytes_per_point();
+    summary.steps           = total.step;
+    summary.time            = time;
+    summary.counts          = {{"newton_iterations", total.newton_iterations},
+                               {"linear_iterations", total.linear_iterations},
+                               {"line_searches", total.line_searches},
+                               {"step_cuts", total.step_cuts},
+                               {"tangents", counts.tangents},
+                               {"tangent_projections", total.projections},
+                               {"solver_fallbacks", counts.solver_fallbacks},
+                               {"noise_stops", total.noise_stops},
+                               {"splits", total.splits},
+                               {"merges", total.merges},
+                               {"stress_evaluations",
+                                Utilities::MPI::sum(counts.stress_evaluations,
+                                           communicator)},
+                               {"operator_applications", counts.operator_applications}};
+    summary.figures         = history.last_figures();
+    summary.points_per_cell = history.last_density();
+    summary.phases          = phases();
+    summary.wall_seconds    = wall_seconds();
+    summary.warnings        = warnings.list();
+    if (status == "done")
+      summary.errors = reference.errors(time, finer_runs);
+    summary.write(directory, communicator);
+    if (status != "done")
+      return;
+    console.message("  points at the end: " + std::to_string(summary.points) +
+                    ", a cell " + to_string(summary.points_per_cell) + '\n' +
+                    summary.phase_table());
+    if (!summary.errors.empty())
+      console.message(summary.error_table());
+  }
+
+  template <int dim>
+  void
+  Simulation<dim>::warn_of_instability()
+  {
+    if (!integrator->has_inertia())
+      return;
+    // Of the highest mode of a grid of full cells, eq. 2.4.1.
+    const double limit = integrator->stable_step(2 / cfl_unit());
+    const double dt    = scene.time.largest_step * step_unit();
+    if (dt <= 1.001 * limit)
+      return;
+    std::ostringstream text;
+    text << "time steps of up to " << dt << " s grow without bound "
+         << "where they exceed about " << limit << " s: the integrator is "
+         << "stable only up to there";
+    warn("instability", text.str());
+  }
+
+  template <int dim>
+  void
+  Simulation<dim>::warn(const std::string &kind, const std::string &text)
+  {
+    if (warnings.add(kind, text, time))
+      console.message("warning: " + text);
+  }
+
+  template <int dim>
+  void
+  Simulation<dim>::watch_faces()
+  {
+    if (std::none_of(scene.faces.begin(),
+                     scene.faces.end(),
+                     [](const auto &face) { return face.value != nullptr; }))
+      return;
+    const auto holds = problem->constraints.faces_that_hold();
+    for (unsigned int f = 0; f < 2 * dim; ++f)
+      if (scene.faces[f].value && face_holds[f] && !holds[f])
+        warn("face " + scene.faces[f].name,
+             "face '" + scene.faces[f].name +
+               "', whose motion is prescribed, has lost its material: it holds "
+               "no node any more");
+    face_holds = holds;
+  }
+
+  template <int dim>
+  void
+  Simulation<dim>::write_row()
+  {
+    history.write(since_row);
+    if (history.last_density().smallest < 1)
+      {
+        std::ostringstream text;
+        text << "some cell has less than one point for its volume ("
+             << history.last_density().smallest
+             << "): forces there are those of single points; let points split, "
+                "or begin with more";
+        warn("few points", text.str());
+      }
+    if (reference.follows_steps())
+      {
+        TimerOutput::Scope scope(timer, "references");
+        reference.follow_step(time);
+      }
+    console.step(since_row,
+                 scene.time.end,
+                 points.sorted.n_global(),
+                 history.last_figures());
+    since_row = StepReport();
+  }
+
+  template <int dim>
+  double
+  Simulation<dim>::wall_seconds() const
+  {
+    return seconds_before + wall.wall_time();
+  }
+
+  template <int dim>
+  std::map<std::string, double>
+  Simulation<dim>::phases() const
+  {
+    auto all = phases_before;
+    for (const auto &[name, seconds] :
+         timer.get_summary_data(TimerOutput::total_wall_time))
+      all[name] += seconds;
+    return all;
+  }
+
+  template void
+  Simulation<2>::describe();
+  template void
+  Simulation<3>::describe();
+  template void
+  Simulation<2>::write_summary(const std::string &, const FinerRuns &);
+  template void
+  Simulation<3>::write_summary(const std::string &, const FinerRuns &);
+  template void
+  Simulation<2>::warn_of_instability();
+  template void
+  Simulation<3>::warn_of_instability();
+  template void
+  Simulation<2>::warn(const std::string &, const std::string &);
+  template void
+  Simulation<3>::warn(const std::string &, const std::string &);
+  template void
+  Simulation<2>::watch_faces();
+  template void
+  Simulation<3>::watch_faces();
+  template void
+  Simulation<2>::write_row();
+  template void
+  Simulation<3>::write_row();
+  template double
+  Simulation<2>::wall_seconds() const;
+  template double
+  Simulation<3>::wall_seconds() const;
+  template std::map<std::string, double>
+  Simulation<2>::phases() const;
+  template std::map<std::string, double>
+  Simulation<3>::phases() const;
+} // namespace impm

@@ -4,6 +4,7 @@
 
 #include <deal.II/numerics/rtree.h>
 
+#include <impm/base/exceptions.h>
 #include <impm/grid/criterion_tools.h>
 #include <impm/points/point_domains.h>
 #include <impm/points/point_fields.h>
@@ -14,6 +15,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <sstream>
 
 namespace impm
 {
@@ -197,6 +199,39 @@ namespace impm
           raise(levels[cell->active_cell_index()], criterion.level);
       });
     }
+
+    template <int dim>
+    void
+    raise_by_expression(const CriterionSpec<dim> &criterion,
+                        const GridState<dim>     &state,
+                        std::vector<int>         &levels)
+    {
+      criterion.expression->set_time(state.time);
+      std::string flaw;
+      for_owned_cells<dim>(state, [&](const auto &cell) {
+        const double level = criterion.expression->value(cell->center());
+        if (std::isnan(level))
+          {
+            std::ostringstream where;
+            where << "is not a number at " << cell->center()
+                  << ", t = " << state.time << " s";
+            flaw = where.str();
+          }
+        else
+          raise(levels[cell->active_cell_index()],
+                static_cast<int>(std::floor(std::clamp(level, 0., 100.))));
+      });
+      const std::string entry =
+        "Grid/Adaptation/" + criterion.name + "/Expression";
+      for (const auto &one :
+           Utilities::MPI::all_gather(state.grid.communicator, flaw))
+        if (one.empty())
+          continue;
+        else if (state.time == 0)
+          throw InputError(entry, "found an expression that " + one);
+        else
+          throw ComputationError("entry '" + entry + "' " + one);
+    }
   } // namespace
 
   template <int dim>
@@ -221,13 +256,7 @@ namespace impm
         case Kind::gradient:
           return raise_by_gradient(criterion, state, levels);
         case Kind::expression:
-          criterion.expression->set_time(state.time);
-          for_owned_cells<dim>(state, [&](const auto &cell) {
-            const double level = criterion.expression->value(cell->center());
-            if (!std::isnan(level))
-              raise(levels[cell->active_cell_index()],
-                    static_cast<int>(std::floor(std::clamp(level, 0., 100.))));
-          });
+          return raise_by_expression(criterion, state, levels);
       }
   }
 

@@ -9,9 +9,8 @@ namespace impm
 
   namespace
   {
-    // Measured in seconds of a step by phase, in parts of an empty cell: blocks
-    // of 40,000 points in the plane and 64,000 in space, GIMP, CG with AMG.
-    constexpr unsigned int empty_cell = 50, populated_cell = 1000, point = 200;
+    // From run times: see doc/adaptive_grids.md.
+    constexpr unsigned int empty_cell = 50, populated_cell = 1000, point = 40;
   } // namespace
 
   template <int dim>

@@ -31,7 +31,7 @@ namespace impm
     unsigned int
     largest_number_of_rounds() const override
     {
-      return spec.highest - spec.lowest + 1;
+      return spec.highest + 1; // the grid begins at level 0
     }
 
   private:

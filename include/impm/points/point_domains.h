@@ -40,7 +40,7 @@ namespace impm
       : layout(points.layout)
       , deformation(points.offset_deformation)
       , domain(layout.offset("initial_domain"))
-      , parent(layout.offset("parent"))
+      , parent(layout.find("parent").value_or(0))
     {
       for (const auto &field : layout.fields())
         if (field.name == "initial_volume" ||
@@ -63,7 +63,8 @@ namespace impm
       return edge;
     }
 
-    const PointLayout        &layout;
+    const PointLayout &layout;
+    /** `parent` is 0 where no points split. */
     const unsigned int        deformation, domain, parent;
     std::vector<unsigned int> shared; ///< parts add up to the whole
     std::vector<unsigned int> common; ///< the same in all parts

@@ -100,6 +100,41 @@ TEST(AdaptiveGridMpi, EachCriterionRefinesItsCells)
 }
 
 
+// Where no points split, too.
+TEST(AdaptiveGridMpi, SurfaceOfPointsThatStay)
+{
+  Model<2> model(block_scene("plane strain"),
+                 small_block + criterion("free surface", {"Level=1"}) +
+                   Overrides{"Grid/Method=GIMP",
+                             "Bodies/block/Point adaptation=off"});
+  EXPECT_EQ(adapt(model), Levels({57, 28, 0, 0}));
+}
+
+
+// Bodies are seeded on the grid that the criteria want, however far that is
+// from the first one.
+TEST(AdaptiveGridMpi, SeedsOnTheFinestLevel)
+{
+  const auto scene = scene_from<2>(block_scene("plane strain"),
+                                   criterion("distance", {"Of=block"}) +
+                                     Overrides{"Grid/Adaptation/Lowest level=2",
+                                               "Grid/Method=GIMP",
+                                               "Bodies/block/Point adaptation="
+                                               "off",
+                                               "Time/Largest number of steps=1",
+                                               "Boundary conditions/left/Type="
+                                               "fixed"});
+  const int  id =
+    Utilities::MPI::broadcast(MPI_COMM_WORLD, static_cast<int>(getpid()));
+  const auto columns =
+    run(scene,
+        MPI_COMM_WORLD,
+        testing::TempDir() + "impm_seeds_" + std::to_string(id));
+  EXPECT_EQ(columns.at("points").back(), 4. * 16 * 16);
+  EXPECT_EQ(columns.at("active_cells").back(), 16. * 16);
+}
+
+
 TEST(AdaptiveGridMpi, BufferAndHysteresisSurround)
 {
   const Overrides at_corner =
@@ -390,6 +425,10 @@ TEST(AdaptiveGrid, BadInputIsRefused)
                {"component 1"});
   expect(criterion("size", {"Component=0.5"}), "Grid/Adaptation/it/Component");
   expect(criterion("expression"), "Grid/Adaptation/it/Expression");
+  expect_blame(block_scene("plane strain"),
+               criterion("expression", {"Expression=sqrt(x - 0.5)"}),
+               "Grid/Adaptation/it/Expression",
+               {"is not a number at"});
   expect(criterion("free surface") + refined, "Grid/Adaptation/Criteria");
   expect(criterion("free surface") +
            Overrides{"Grid/Adaptation/Lowest level=3"},

@@ -1,10 +1,8 @@
 #include <deal.II/base/utilities.h>
 
-#include <impm/balance/terms/loads.h>
 #include <impm/base/exceptions.h>
 #include <impm/base/files.h>
 #include <impm/footprints/transfer.h>
-#include <impm/output/summary.h>
 #include <impm/run/motion_limits.h>
 #include <impm/run/run_directory.h>
 #include <impm/run/signals.h>

@@ -27,28 +27,7 @@ namespace
     const auto together = run(scene, MPI_COMM_WORLD, path);
 
     ASSERT_EQ(alone.at("step").size(), 5u);
-    for (const auto &[name, values] : alone)
-      {
-        // How Newton's method got there may depend on round-off.
-        if (name == "wall_seconds" || name == "residual" ||
-            name == "imbalance" ||
-            name.find("iterations") != std::string::npos ||
-            name == "line_searches" || name == "noise_stops")
-          continue;
-        const auto &others = together.at(name);
-        ASSERT_EQ(others.size(), values.size());
-        double largest = 0, error = 0;
-        for (unsigned int i = 0; i < values.size(); ++i)
-          {
-            largest = std::max(largest, std::abs(values[i]));
-            error   = std::max(error, std::abs(values[i] - others[i]));
-          }
-        // Momentum across the axis is round-off.
-        if (largest > 1e-12)
-          {
-            EXPECT_LT(error / largest, 1e-7) << name;
-          }
-      }
+    expect_near(alone, together);
     EXPECT_GT(alone.at("plastic_work").back(), 0.);
     EXPECT_GT(alone.at("load").back(), 0.);
   }

@@ -136,34 +136,6 @@ namespace
                   parts.summary.at("errors")[i].at(name));
   }
 
-  void
-  expect_near(const Left &whole, const Left &parts)
-  {
-    for (const auto &[name, values] : whole.history)
-      {
-        // How Newton's method got there may depend on round-off, and what is
-        // left of large figures.
-        if (name == "wall_seconds" || name == "residual" ||
-            name == "imbalance" || name == "transfer_loss" ||
-            name.find("iterations") != std::string::npos ||
-            name == "line_searches" || name == "noise_stops")
-          continue;
-        const auto &others = parts.history.at(name);
-        ASSERT_EQ(others.size(), values.size());
-        double largest = 0, error = 0;
-        for (unsigned int i = 0; i < values.size(); ++i)
-          {
-            largest = std::max(largest, std::abs(values[i]));
-            error   = std::max(error, std::abs(values[i] - others[i]));
-          }
-        // Momentum across an axis of symmetry is round-off.
-        if (largest > 1e-12)
-          {
-            EXPECT_LT(error / largest, 1e-7) << name;
-          }
-      }
-  }
-
   /**
    * A scene of some ten steps whole; in two parts, where the second one starts
    * from the last but one checkpoint, since the last is damaged; and on other
@@ -195,7 +167,10 @@ namespace
         const Directory directory("ranks");
         run_on<dim>(n, scene(3), directory, false);
         run_on<dim>(1, scene(5), directory, true);
-        expect_near(whole, run_on<dim>(2, scene(1000), directory, true));
+        expect_near(whole.history,
+                    run_on<dim>(2, scene(1000), directory, true).history,
+                    // what is left of large figures
+                    {"transfer_loss"});
       }
     return whole;
   }

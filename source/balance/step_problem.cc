@@ -19,10 +19,15 @@ namespace impm
                      const bool                 has_inertia)
     {
       auto footprints = builder.build(points, grid, discretization);
-      if (has_inertia && !grid.is_lagrangian)
+      if (grid.is_lagrangian)
+        return footprints;
+      if (has_inertia)
         footprints.release_massless_nodes(discretization);
+      if (grid.is_moved())
+        footprints.move(grid.nodal_state().displacement);
       return footprints;
     }
+
     /** A scene has the terms that it needs and no others. */
     std::vector<Term *>
     those_that_are(std::vector<Term *> terms)

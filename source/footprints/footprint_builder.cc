@@ -39,6 +39,17 @@ namespace impm
       return half;
     }
 
+    /** Where a place in a unit cell is in an axis-aligned one (m). */
+    template <typename Cell, int dim>
+    Point<dim>
+    place_in(const Cell &cell, const Tensor<1, dim> &unit)
+    {
+      Point<dim> place = cell->vertex(0);
+      for (unsigned int d = 0; d < dim; ++d)
+        place[d] += unit[d] * cell_extent(cell, d);
+      return place;
+    }
+
     /** Appends the part of a box [lower, upper] in a cell; returns its weight.
      */
     template <int dim>
@@ -69,6 +80,70 @@ namespace impm
       return weight;
     }
   } // namespace
+
+  template <int dim>
+  void
+  FootprintBuilder<dim>::add_fields(const GridSpec<dim> &spec,
+                                    PointLayout         &layout)
+  {
+    if (!spec.keeps_motion() || spec.is_lagrangian())
+      return;
+    layout.add("unit_position", PointLayout::Kind::vector);
+    if (spec.method == GridMethod::gimp)
+      layout.add("half_extents", PointLayout::Kind::vector);
+  }
+
+  template <int dim>
+  void
+  FootprintBuilder<dim>::remember(MaterialPoints<dim> &points) const
+  {
+    if (!keeps_motion)
+      return;
+    const auto  &layout   = points.layout;
+    const auto   position = layout.offset("unit_position");
+    const auto   half     = layout.find("half_extents");
+    unsigned int p        = 0;
+    for (const auto &particle : points.sorted.particles)
+      {
+        points.set_vector(p, position, particle.get_reference_location());
+        if (half)
+          points.set_vector(p,
+                            *half,
+                            half_extents(points,
+                                         p,
+                                         layout.offset("initial_domain"),
+                                         boxes_stretch));
+        ++p;
+      }
+  }
+
+  template <int dim>
+  void
+  FootprintBuilder<dim>::sort(const unsigned int   n_places,
+                              MaterialPoints<dim> &points) const
+  {
+    // The field will be filled anew: until then it travels with the points.
+    const auto   end = points.layout.offset("unit_position");
+    unsigned int p   = 0;
+    for (auto &particle : points.sorted.particles)
+      {
+        const auto goal = particle.get_location();
+        particle.set_location(
+          place_in(particle.get_surrounding_cell(), points.vector(p, end)));
+        points.set_vector(p++, end, goal);
+      }
+    for (unsigned int n = n_places; n > 0; --n)
+      {
+        p = 0;
+        for (auto &particle : points.sorted.particles)
+          {
+            const Point<dim> goal(points.vector(p++, end));
+            const auto       x = particle.get_location();
+            particle.set_location(n == 1 ? goal : x + (goal - x) / n);
+          }
+        points.sort();
+      }
+  }
 
   template <int dim>
   const typename FootprintBuilder<dim>::Surroundings &
@@ -114,8 +189,12 @@ namespace impm
     Footprints<dim>                              footprints;
     std::vector<typename Footprints<dim>::Piece> pieces;
     pieces.reserve(points.size());
-    const unsigned int offset_domain =
-      has_boxes ? points.layout.offset("initial_domain") : 0;
+    const auto &layout        = points.layout;
+    const auto  offset_domain = has_boxes ? layout.offset("initial_domain") : 0;
+    const auto  offset_position =
+      keeps_motion ? layout.offset("unit_position") : 0;
+    const auto offset_half =
+      keeps_motion && has_boxes ? layout.offset("half_extents") : 0;
     unsigned int        p      = 0;
     const Surroundings *around = nullptr;
     CellIterator        current;
@@ -123,7 +202,12 @@ namespace impm
       {
         const auto cell =
           discretization.with_dofs(particle.get_surrounding_cell());
-        const auto         x      = particle.get_location();
+        // Not that of the particle, which changes when it is sent to a rank.
+        const Point<dim> unit =
+          keeps_motion ? Point<dim>(points.vector(p, offset_position)) :
+                         particle.get_reference_location();
+        const auto x =
+          keeps_motion ? place_in(cell, unit) : particle.get_location();
         double             radius = x[0];
         const unsigned int first  = pieces.size();
         if (has_boxes)
@@ -135,13 +219,15 @@ namespace impm
               }
             const auto &[cells, reach, start, end] = *around;
             const auto half =
-              half_extents(points, p, offset_domain, boxes_stretch);
+              keeps_motion ?
+                points.vector(p, offset_half) :
+                half_extents(points, p, offset_domain, boxes_stretch);
             Point<dim> lower = x - half, upper = x + half;
             bool       inside = true, limited = false;
             for (unsigned int d = 0; d < dim; ++d)
               {
-                lower[d] = std::max(lower[d], grid.face_position(2 * d));
-                upper[d] = std::min(upper[d], grid.face_position(2 * d + 1));
+                lower[d] = std::max(lower[d], grid.face_of_vertices(2 * d));
+                upper[d] = std::min(upper[d], grid.face_of_vertices(2 * d + 1));
                 // Other ranks see no further than one cell.
                 const double slack = 1e-9 * reach[d];
                 const double below = start[d] - reach[d],
@@ -165,7 +251,7 @@ namespace impm
           }
         // A box without extent, too, is a point.
         if (pieces.size() == first)
-          pieces.push_back({p, cell, 1., particle.get_reference_location()});
+          pieces.push_back({p, cell, 1., unit});
         if (points.layout.geometry == GeometryKind::axisymmetric)
           footprints.inverse_radius.push_back(1 / radius);
         ++p;

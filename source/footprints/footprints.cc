@@ -1,5 +1,7 @@
 #include <impm/footprints/footprints.h>
 
+#include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace impm
@@ -257,6 +259,64 @@ namespace impm
         patch.end_nodes  = patch_nodes.size();
         patches.push_back(patch);
       }
+  }
+
+  template <int dim>
+  typename Footprints<dim>::Tensors
+  Footprints<dim>::deformations(const Vector &u) const
+  {
+    Tensors result(first.size() - 1,
+                   Tensor<2, dim>(unit_symmetric_tensor<dim>()));
+    for (const auto &cell : cells)
+      for (unsigned int e = cell.begin; e < cell.end; ++e)
+        for (unsigned int n = 0; n < n_nodes; ++n)
+          for (unsigned int c = 0; c < dim; ++c)
+            for (unsigned int d = 0; d < dim; ++d)
+              result[point[e]][c][d] +=
+                u.local_element(dim * cell.nodes[n] + c) *
+                gradient(e)[n * dim + d];
+    return result;
+  }
+
+  template <int dim>
+  void
+  Footprints<dim>::move(const Vector &displacement)
+  {
+    if (!inverse_radius.empty())
+      {
+        std::vector<Tensor<1, dim>> at_points;
+        interpolate(displacement, at_points);
+        for (unsigned int p = 0; p < at_points.size(); ++p)
+          inverse_radius[p] = 1 / (1 / inverse_radius[p] + at_points[p][0]);
+      }
+    moved_by = deformations(displacement);
+    for (unsigned int e = 0; e < point.size(); ++e)
+      {
+        const auto inverse = transpose(invert(moved_by[point[e]]));
+        for (unsigned int n = 0; n < n_nodes; ++n)
+          {
+            double        *slope = &gradients[(e * n_nodes + n) * dim];
+            Tensor<1, dim> old;
+            std::copy_n(slope, dim, old.begin_raw());
+            const auto now = inverse * old;
+            std::copy_n(now.begin_raw(), dim, slope);
+          }
+      }
+  }
+
+  template <int dim>
+  double
+  Footprints<dim>::largest_distortion(const Vector &increment) const
+  {
+    double        largest = 0;
+    const Tensors step    = deformations(increment);
+    for (unsigned int p = 0; p < step.size(); ++p)
+      {
+        const auto A = moved_by.empty() ? step[p] : step[p] * moved_by[p];
+        for (const double square : eigenvalues(symmetrize(transpose(A) * A)))
+          largest = std::max(largest, std::abs(std::log(square)) / 2);
+      }
+    return largest;
   }
 
   template <int dim>

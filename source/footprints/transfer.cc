@@ -38,9 +38,14 @@ namespace impm
       for (unsigned int p = 0; p < points.size(); ++p)
         own[p] = points.mass(p) * points.vector(p, points.offset_acceleration);
       Vector mean;
-      discretization.initialize(mean);
-      problem.footprints.spread(own, mean);
-      average_over_mass(discretization, problem.motion.mass, mean);
+      if (problem.footprints.are_moved())
+        mean = problem.motion.acceleration; // which nodes have kept
+      else
+        {
+          discretization.initialize(mean);
+          problem.footprints.spread(own, mean);
+          average_over_mass(discretization, problem.motion.mass, mean);
+        }
       discretization.interpolate_hanging(mean);
       problem.footprints.interpolate(mean, seen);
       for (unsigned int p = 0; p < points.size(); ++p)

@@ -48,8 +48,6 @@ namespace impm
                                 const RigidBodies<dim>    &rigid,
                                 const PolicyTime          &now)
   {
-    if (now.step % spec.interval != 0)
-      return false;
     std::vector<int> wanted(grid.triangulation.n_active_cells(), spec.lowest);
     for (const auto &criterion : spec.criteria)
       raise_levels<dim>(criterion,

@@ -26,6 +26,7 @@ namespace impm
                     parallel::distributed::Triangulation<
                       dim>::mesh_reconstruction_after_repartitioning)
     , is_lagrangian(spec.is_lagrangian())
+    , keeps_motion(spec.keeps_motion())
     , finest_level(std::max(spec.finest_level, spec.refinement_levels))
     // Particles on faces are lost with any mapping but the Cartesian one.
     , mapping(is_lagrangian ? MappingQ<dim>(1).clone() :
@@ -33,6 +34,8 @@ namespace impm
     , spec(spec)
     , lower_corner(spec.lower_corner)
     , upper_corner(spec.upper_corner)
+    , placed_lower(lower_corner)
+    , placed_upper(upper_corner)
   {
     int level = make_coarse_cells();
     triangulation.refine_global(level);
@@ -45,11 +48,12 @@ namespace impm
             cell->set_refine_flag();
         triangulation.execute_coarsening_and_refinement();
       }
-    place_vertices(lower_corner, upper_corner);
+    place_vertices();
     current = std::make_shared<Discretization<dim>>(
       std::make_shared<NodeNumbering<dim>>(triangulation, 1),
       state.displacement);
-    if (is_lagrangian)
+    moved = is_lagrangian;
+    if (moved)
       current->initialize(state.displacement);
   }
 
@@ -73,10 +77,10 @@ namespace impm
 
   template <int dim>
   void
-  BackgroundGrid<dim>::place_vertices(const Point<dim> &lower,
-                                      const Point<dim> &upper)
+  BackgroundGrid<dim>::place_vertices()
   {
-    const int n_levels = triangulation.n_global_levels();
+    const auto lower = placed_lower, upper = placed_upper;
+    const int  n_levels = triangulation.n_global_levels();
     GridTools::transform(
       [&](const Point<dim> &vertex) {
         Point<dim> placed;
@@ -97,6 +101,26 @@ namespace impm
         return placed;
       },
       triangulation);
+    placed_lower = lower_corner;
+    placed_upper = upper_corner;
+  }
+
+  template <int dim>
+  void
+  BackgroundGrid<dim>::place_nodes()
+  {
+    current = std::make_shared<Discretization<dim>>(current->numbering,
+                                                    state.displacement);
+  }
+
+  template <int dim>
+  void
+  BackgroundGrid<dim>::reset()
+  {
+    moved = false;
+    state = NodalState();
+    place_vertices();
+    place_nodes();
   }
 
   template <int dim>
@@ -119,7 +143,7 @@ namespace impm
   void
   BackgroundGrid<dim>::renumber()
   {
-    place_vertices(lower_corner, upper_corner);
+    place_vertices();
     current = std::make_shared<Discretization<dim>>(
       std::make_shared<NodeNumbering<dim>>(triangulation,
                                            current->numbering->epoch + 1),
@@ -130,27 +154,30 @@ namespace impm
   void
   BackgroundGrid<dim>::move_face(const unsigned int face, const double position)
   {
-    const auto lower = lower_corner, upper = upper_corner;
     (face % 2 == 0 ? lower_corner : upper_corner)[face / 2] = position;
-    place_vertices(lower, upper);
-    current = std::make_shared<Discretization<dim>>(current->numbering,
-                                                    state.displacement);
+    if (moved)
+      return;
+    place_vertices();
+    place_nodes();
   }
 
   template <int dim>
   void
-  BackgroundGrid<dim>::load(const std::string                 &file_name,
-                            const std::array<double, 2 * dim> &faces)
+  BackgroundGrid<dim>::load(const std::string   &file_name,
+                            const FacePositions &faces_of_vertices,
+                            const bool           was_moved)
   {
     const unsigned int epoch = current->numbering->epoch + 1;
     current.reset();
+    moved = was_moved;
     state = NodalState();
-    for (unsigned int f = 0; f < 2 * dim; ++f)
-      (f % 2 == 0 ? lower_corner : upper_corner)[f / 2] = faces[f];
+    set_corners(faces_of_vertices);
+    placed_lower = lower_corner;
+    placed_upper = upper_corner;
     triangulation.clear();
     make_coarse_cells();
     triangulation.load(file_name);
-    place_vertices(lower_corner, upper_corner);
+    place_vertices();
     current = std::make_shared<Discretization<dim>>(
       std::make_shared<NodeNumbering<dim>>(triangulation, epoch),
       state.displacement);
@@ -158,23 +185,38 @@ namespace impm
 
   template <int dim>
   void
-  BackgroundGrid<dim>::set_nodal_state(const NodalState &new_state)
+  BackgroundGrid<dim>::set_motion(const NodalState    &new_state,
+                                  const FacePositions &faces)
   {
-    state   = new_state;
-    current = std::make_shared<Discretization<dim>>(current->numbering,
-                                                    state.displacement);
+    state = new_state;
+    for (const auto *vector :
+         {&state.displacement, &state.velocity, &state.acceleration})
+      if (vector->size() > 0)
+        vector->update_ghost_values(); // which copies lack
+    set_corners(faces);
+    place_nodes();
+  }
+
+  template <int dim>
+  void
+  BackgroundGrid<dim>::set_corners(const FacePositions &faces)
+  {
+    for (unsigned int f = 0; f < 2 * dim; ++f)
+      (f % 2 == 0 ? lower_corner : upper_corner)[f / 2] = faces[f];
   }
 
   template <int dim>
   void
   BackgroundGrid<dim>::carry(const StepResult &result)
   {
+    moved = true;
+    if (state.displacement.size() == 0)
+      current->initialize(state.displacement);
     state.displacement += result.increment;
     state.displacement.update_ghost_values();
     state.velocity     = result.velocity;
     state.acceleration = result.acceleration;
-    current = std::make_shared<Discretization<dim>>(current->numbering,
-                                                    state.displacement);
+    place_nodes();
   }
 
   template class BackgroundGrid<2>;

@@ -26,7 +26,7 @@ namespace impm
                            const double         from,
                            const double         to) const
   {
-    if (grid.is_lagrangian)
+    if (grid.keeps_motion)
       grid.carry(result);
     for (unsigned int f = 0; f < 2 * dim; ++f)
       if (faces[f].moves_grid)
@@ -38,13 +38,10 @@ namespace impm
     /** Changes the cells of the grid under points and rigid bodies. */
     template <int dim>
     void
-    change_cells(BackgroundGrid<dim>         &grid,
-                 MaterialPoints<dim>         &points,
+    change_cells(MaterialPoints<dim>         &points,
                  RigidBodies<dim>            &rigid,
                  const std::function<void()> &change)
     {
-      if (grid.is_lagrangian)
-        throw ComputationError("the cells of a Lagrangian grid cannot change");
       std::vector<SortedParticles<dim> *> all = {&points.sorted};
       for (const auto &body : rigid.bodies)
         all.push_back(body.points.get());
@@ -54,8 +51,7 @@ namespace impm
       for (auto *some : all)
         some->particles.unpack_after_coarsening_and_refinement();
       points.sort();
-      for (const auto &body : rigid.bodies)
-        body.points->sort();
+      rigid.sort();
     }
   } // namespace
 
@@ -65,7 +61,9 @@ namespace impm
              MaterialPoints<dim> &points,
              RigidBodies<dim>    &rigid)
   {
-    change_cells<dim>(grid, points, rigid, [&]() { grid.adapt(); });
+    if (grid.is_moved())
+      throw ComputationError("the cells of a grid that is moved cannot change");
+    change_cells<dim>(points, rigid, [&]() { grid.adapt(); });
   }
 
   template <int dim>
@@ -74,7 +72,7 @@ namespace impm
                    MaterialPoints<dim> &points,
                    RigidBodies<dim>    &rigid)
   {
-    change_cells<dim>(grid, points, rigid, [&]() { grid.repartition(); });
+    change_cells<dim>(points, rigid, [&]() { grid.repartition(); });
   }
 
   template class GridPolicy<2>;

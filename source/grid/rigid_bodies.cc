@@ -77,6 +77,29 @@ namespace impm
 
   template <int dim>
   void
+  RigidBodies<dim>::sort()
+  {
+    for (const auto &body : bodies)
+      body.points->sort();
+  }
+
+  template <int dim>
+  double
+  RigidBodies<dim>::largest_displacement(const double from,
+                                         const double to) const
+  {
+    double largest = 0;
+    for (const auto &body : bodies)
+      {
+        const auto displacement = body.displacement(from, to);
+        for (unsigned int d = 0; d < dim; ++d)
+          largest = std::max(largest, std::abs(displacement[d]));
+      }
+    return largest;
+  }
+
+  template <int dim>
+  void
   RigidBodies<dim>::stick(const double time)
   {
     const auto discretization = grid.discretization();

@@ -28,6 +28,7 @@ namespace impm
     noise_stops += before.noise_stops;
     splits += before.splits;
     merges += before.merges;
+    grid_resets += before.grid_resets;
   }
 
   namespace

@@ -186,7 +186,7 @@ namespace impm
     grid_writer.add_data_vector(level, "level");
     grid_writer.add_data_vector(rank, "rank");
     grid_writer.add_data_vector(n_points, "points");
-    if (!grid.is_lagrangian)
+    if (!grid.is_moved())
       grid_writer.build_patches(*grid.mapping);
     else
       {

@@ -58,8 +58,8 @@ namespace impm
   void
   SortedParticles<dim>::sort()
   {
-    // Gauss points stay in their cells wherever these go.
-    if (grid.is_lagrangian)
+    // They stay in their cells wherever these go.
+    if (grid.is_moved())
       return;
     const auto before = particles.n_global_particles();
     particles.sort_particles_into_subdomains_and_cells();

@@ -27,18 +27,19 @@ namespace impm
     template <int dim>
     struct Header
     {
-      std::string                 parameters;
-      std::vector<std::string>    fields; ///< of the points
-      std::array<double, 2 * dim> faces;  ///< where they lie (m)
-      std::vector<unsigned int>   shares; ///< of cells, by rank
-      /** Of a Lagrangian grid: whether its nodes have a velocity. */
-      bool nodes_move;
+      std::string               parameters;
+      std::vector<std::string>  fields; ///< of the points
+      std::vector<unsigned int> shares; ///< of cells, by rank
+      bool                      is_moved;
+      bool                      nodes_have_velocity; ///< if the grid is_moved
+      typename BackgroundGrid<dim>::FacePositions faces, faces_of_vertices;
 
       template <class Archive>
       void
       serialize(Archive &archive, const unsigned int /*version*/)
       {
-        archive &parameters &fields &faces &shares &nodes_move;
+        archive &parameters &fields &shares &is_moved &nodes_have_velocity
+          &faces &faces_of_vertices;
       }
     };
 
@@ -57,28 +58,20 @@ namespace impm
     template <int dim>
     using NodeTransfer = parallel::distributed::SolutionTransfer<dim, Vector>;
 
-    /** Values at the nodes of a Lagrangian grid. */
-    struct NodeVectors
+    /** Values at the nodes of a grid that is moved: displacement, velocity,
+     * acceleration, holders. */
+    using NodeVectors = std::array<Vector, 4>;
+
+    /** Zero. Collective. */
+    template <int dim>
+    NodeVectors
+    zero_vectors(const Discretization<dim> &discretization)
     {
-      /** Zero. Collective. */
-      template <int dim>
-      explicit NodeVectors(const Discretization<dim> &discretization)
-      {
-        for (auto *vector : {&displacement, &velocity, &acceleration, &holders})
-          discretization.initialize(*vector);
-      }
-
-      /** For the transfer, or from it: with ghosts. Collective. */
-      void
-      update_ghost_values() const
-      {
-        for (const auto *vector :
-             {&displacement, &velocity, &acceleration, &holders})
-          vector->update_ghost_values();
-      }
-
-      Vector displacement, velocity, acceleration, holders;
-    };
+      NodeVectors vectors;
+      for (auto &vector : vectors)
+        discretization.initialize(vector);
+      return vectors;
+    }
 
     /** More than all files of a checkpoint take. Collective. */
     template <int dim>
@@ -90,7 +83,7 @@ namespace impm
       unsigned long bytes =
         100000 + grid.triangulation.n_global_active_cells() *
                    (500 + 16 * all.size() +
-                    (grid.is_lagrangian ? 4 * sizeof(double) * dim << dim : 0));
+                    (grid.is_moved() ? 4 * sizeof(double) * dim << dim : 0));
       for (const auto *particles : all)
         bytes +=
           particles->n_global_particles() *
@@ -130,9 +123,9 @@ namespace impm
     auto   evaluations =
       Utilities::MPI::sum(counts.stress_evaluations, communicator);
     archive &time &total &since_row &control &work &resampled &best_imbalance
-      &pictures &history &reference &warnings &face_holds &counts
-        .operator_applications &counts.tangents &counts
-        .solver_fallbacks &evaluations &seconds &seconds_by;
+      &adapted_step &off_grid &pictures &history &reference &warnings
+        &face_holds &counts.operator_applications &counts.tangents &counts
+          .solver_fallbacks &evaluations &seconds                  &seconds_by;
     if (!Archive::is_loading::value)
       return;
     seconds_before = seconds;
@@ -153,11 +146,16 @@ namespace impm
     const auto &nodes = grid.nodal_state();
     Header<dim> header{parameters,
                        names_of(points.layout.fields()),
-                       {},
                        balance.shares(),
-                       nodes.velocity.size() > 0};
+                       grid.is_moved(),
+                       nodes.velocity.size() > 0,
+                       {},
+                       {}};
     for (unsigned int f = 0; f < 2 * dim; ++f)
-      header.faces[f] = grid.face_position(f);
+      {
+        header.faces[f]             = grid.face_position(f);
+        header.faces_of_vertices[f] = grid.face_of_vertices(f);
+      }
     std::ostringstream state;
     {
       boost::archive::binary_oarchive archive(state);
@@ -175,26 +173,27 @@ namespace impm
       particles->prepare_for_serialization();
     const auto        discretization = grid.discretization();
     NodeTransfer<dim> transfer(discretization->dof_handler());
-    const auto        vectors = grid.is_lagrangian ?
-                                  std::make_unique<NodeVectors>(*discretization) :
-                                  nullptr;
-    if (vectors)
+    NodeVectors       vectors;
+    if (grid.is_moved())
       {
-        vectors->displacement = nodes.displacement;
-        if (header.nodes_move)
+        vectors    = zero_vectors(*discretization);
+        vectors[0] = nodes.displacement;
+        if (header.nodes_have_velocity)
           {
-            vectors->velocity     = nodes.velocity;
-            vectors->acceleration = nodes.acceleration;
+            vectors[1] = nodes.velocity;
+            vectors[2] = nodes.acceleration;
           }
-        for (unsigned int n = 0;
-             dim * n < vectors->holders.locally_owned_size();
-             ++n)
-          vectors->holders.local_element(dim * n) = rigid.holders_of_nodes[n];
-        vectors->update_ghost_values();
-        transfer.prepare_for_serialization({&vectors->displacement,
-                                            &vectors->velocity,
-                                            &vectors->acceleration,
-                                            &vectors->holders});
+        if (grid.is_lagrangian)
+          for (unsigned int n = 0; dim * n < vectors[3].locally_owned_size();
+               ++n)
+            vectors[3].local_element(dim * n) = rigid.holders_of_nodes[n];
+        std::vector<const Vector *> all_vectors;
+        for (const auto &vector : vectors)
+          {
+            vector.update_ghost_values();
+            all_vectors.push_back(&vector);
+          }
+        transfer.prepare_for_serialization(all_vectors);
       }
     try
       {
@@ -240,35 +239,61 @@ namespace impm
     check_restart(header.parameters, parameters);
     require_fields(header.fields, names_of(points.layout.fields()));
 
-    grid.load(path + ".grid", header.faces);
+    grid.load(path + ".grid", header.faces_of_vertices, header.is_moved);
     for (auto *particles : all_particles(points, rigid))
       particles->deserialize();
     points.sort();
+    // With unknowns of its own, as those of the grid go when it is
+    // repartitioned.
+    DoFHandler<dim> nodes(grid.triangulation);
+    NodeVectors     vectors;
+    const auto      number_nodes = [&]() {
+      nodes.distribute_dofs(grid.discretization()->dof_handler().get_fe());
+      vectors = zero_vectors(*grid.discretization());
+    };
+    const auto all_vectors = [&]() {
+      std::vector<Vector *> all;
+      for (auto &vector : vectors)
+        all.push_back(&vector);
+      return all;
+    };
+    if (header.is_moved)
+      {
+        number_nodes();
+        auto all = all_vectors();
+        NodeTransfer<dim>(nodes).deserialize(all);
+        for (const auto &vector : vectors)
+          vector.update_ghost_values();
+      }
     if (!grid.is_lagrangian)
       {
+        NodeTransfer<dim> transfer(nodes);
+        if (header.is_moved)
+          transfer.prepare_for_coarsening_and_refinement(
+            {&vectors[0], &vectors[1], &vectors[2], &vectors[3]});
         // Sums in another order would differ by round-off.
         balance.impose(header.shares);
         repartition_grid(grid, points, rigid);
         balance.impose({});
+        if (header.is_moved)
+          {
+            number_nodes();
+            auto all = all_vectors();
+            transfer.interpolate(all);
+          }
       }
-    if (grid.is_lagrangian)
+    if (header.is_moved)
       {
-        const auto            discretization = grid.discretization();
-        NodeTransfer<dim>     transfer(discretization->dof_handler());
-        NodeVectors           vectors(*discretization);
-        std::vector<Vector *> all = {&vectors.displacement,
-                                     &vectors.velocity,
-                                     &vectors.acceleration,
-                                     &vectors.holders};
-        transfer.deserialize(all);
-        vectors.update_ghost_values();
-        if (!header.nodes_move)
-          vectors.velocity = vectors.acceleration = Vector();
-        rigid.holders_of_nodes.resize(discretization->node_positions.size());
+        for (const auto &vector : vectors)
+          vector.update_ghost_values();
+        if (grid.is_lagrangian)
+          rigid.holders_of_nodes.resize(
+            grid.discretization()->node_positions.size());
         for (unsigned int n = 0; n < rigid.holders_of_nodes.size(); ++n)
-          rigid.holders_of_nodes[n] = vectors.holders.local_element(dim * n);
-        grid.set_nodal_state(
-          {vectors.displacement, vectors.velocity, vectors.acceleration});
+          rigid.holders_of_nodes[n] = vectors[3].local_element(dim * n);
+        if (!header.nodes_have_velocity)
+          vectors[1] = vectors[2] = Vector();
+        grid.set_motion({vectors[0], vectors[1], vectors[2]}, header.faces);
       }
     exchange(archive);
     std::ostringstream where;

@@ -57,6 +57,7 @@ namespace impm
                                {"noise_stops", total.noise_stops},
                                {"splits", total.splits},
                                {"merges", total.merges},
+                               {"grid_resets", total.grid_resets},
                                {"stress_evaluations",
                                 Utilities::MPI::sum(counts.stress_evaluations,
                                            communicator)},

@@ -99,7 +99,15 @@ namespace impm
   Simulation<dim>::adapt()
   {
     TimerOutput::Scope scope(timer, "adapt grid and points");
-    bool               goes_on = true;
+    report.imbalance = balance.imbalance();
+    if (grid.is_moved())
+      return;
+    // Steps of an interval may have passed without a grid to adapt.
+    const unsigned int interval = scene.adaptation.interval;
+    bool               goes_on =
+      total.step == 0 || total.step / interval != adapted_step / interval;
+    if (goes_on)
+      adapted_step = total.step;
     for (unsigned int i = 0;
          goes_on && i < policy->largest_number_of_rounds() &&
          policy->flag_cells(grid, points, rigid, {time, total.step, i});
@@ -113,9 +121,8 @@ namespace impm
         goes_on = grid.triangulation.n_global_active_cells() != n;
       }
     report.imbalance = balance.imbalance();
-    if (!grid.is_lagrangian &&
-        report.imbalance >
-          std::max(scene.grid.largest_imbalance, 1.1 * best_imbalance))
+    if (report.imbalance >
+        std::max(scene.grid.largest_imbalance, 1.1 * best_imbalance))
       {
         problem.reset();
         repartition_grid(grid, points, rigid);
@@ -133,6 +140,36 @@ namespace impm
     resampled.append(changes);
     report.resampling_kinetic_energy  = resampled.kinetic_energy;
     report.resampling_internal_energy = resampled.internal_energy;
+  }
+
+  template <int dim>
+  bool
+  Simulation<dim>::reset_is_due() const
+  {
+    const auto  &spec = scene.grid;
+    const double next = 1 + 1. / off_grid.n_steps; // goes as far as these did
+    if (next * off_grid.in_cells > 0.95 * spec.reset_motion ||
+        rigid.largest_displacement(off_grid.start, time + report.dt) >
+          0.95 * grid.discretization()->smallest_cell_extent)
+      return true;
+    if (spec.reset == GridReset::interval)
+      return off_grid.n_steps >= spec.reset_interval;
+    return Utilities::MPI::max(problem->footprints.largest_distortion(
+                                 result.increment),
+                               communicator) > spec.reset_distortion;
+  }
+
+  template <int dim>
+  void
+  Simulation<dim>::reset_grid()
+  {
+    grid.reset();
+    // No further than a neighbouring cell, which may be half as large, at once.
+    builder.sort(1 + std::floor(off_grid.in_cells / 0.45), points);
+    rigid.sort();
+    resample();
+    off_grid = OffGrid();
+    ++report.grid_resets;
   }
 
   template <int dim>
@@ -163,10 +200,17 @@ namespace impm
                        " /" + std::to_string(1 / solution.step_lengths[i]) :
                        "");
     console.detail("  residuals:" + iterations.str());
-    return solution.converged ?
-             forbidden_motion(
-               *problem, result.increment, grid, points, *policy) :
-             solution.failure;
+    if (!solution.converged)
+      return solution.failure;
+    const auto motion = motion_through_grid(*problem,
+                                            result.increment,
+                                            grid,
+                                            points,
+                                            *policy,
+                                            scene.grid.reset_motion);
+    if (motion.forbidden.empty())
+      off_grid.in_cells = motion.in_cells;
+    return motion.forbidden;
   }
 
   template <int dim>
@@ -178,10 +222,20 @@ namespace impm
     if (total.step == 0)
       resample();
     adapt();
+    if (!grid.is_moved())
+      builder.remember(points);
     for (double dt = control.begin(time, step_unit());;)
       {
         const std::string failure = attempt(dt);
         const bool        failed  = !failure.empty();
+        if (failed && is_off_grid())
+          {
+            console.detail("  grid reset at t = " + std::to_string(time) +
+                           ": " + failure);
+            reset_grid();
+            builder.remember(points);
+            continue;
+          }
         // Nodes must not pass into a rigid body: the first one lands on it.
         const double part =
           failed ? 0.5 :
@@ -236,10 +290,17 @@ namespace impm
     result                 = problem->end_motion(result.increment);
     advance_points(*problem, result, scene.time, points);
     policy->advance(grid, result, time, end);
-    points.sort();
     rigid.move(time, end);
-    resample();
-    time             = end;
+    if (is_off_grid() && off_grid.n_steps++ == 0)
+      off_grid.start = time;
+    time = end;
+    if (is_off_grid() && reset_is_due())
+      reset_grid();
+    else if (!grid.is_moved())
+      {
+        points.sort();
+        resample();
+      }
     is_between_steps = true;
   }
 

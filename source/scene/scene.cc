@@ -1,4 +1,5 @@
 #include <impm/balance/terms/loads.h>
+#include <impm/footprints/footprint_builder.h>
 #include <impm/scene/scene.h>
 
 #include <boost/algorithm/cxx11/any_of.hpp>
@@ -31,6 +32,10 @@ namespace impm
       add_boundary_conditions(top, scene.faces, scene.grid, scene.warnings);
       add_loads(top, scene.loads, scene.bodies, lagrangian);
       add_time(top, scene.time, lagrangian, scene.warnings);
+      if (scene.time.momentum_formulation && scene.grid.keeps_motion())
+        top.subsection("Time").refuse(
+          "Formulation",
+          "allowed on a grid that keeps its motion ('Grid/Reset') is velocity");
       add_solver(top, scene.solver, scene.time, scene.bodies);
       add_stabilization(top, scene.stabilization, scene.time, lagrangian);
       add_output(top, scene.output, scene.faces, scene.bodies);
@@ -121,6 +126,7 @@ namespace impm
         }))
       layout.add("initial_domain", Kind::vector);
 
+    FootprintBuilder<dim>::add_fields(scene.grid, layout);
     for (const auto &traction : scene.loads.tractions)
       layout.add(traction_field(traction), Kind::scalar);
 

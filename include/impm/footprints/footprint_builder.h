@@ -24,7 +24,23 @@ namespace impm
     explicit FootprintBuilder(const GridSpec<dim> &spec)
       : has_boxes(spec.method == GridMethod::gimp)
       , boxes_stretch(spec.boxes_stretch)
+      , keeps_motion(spec.keeps_motion() && !spec.is_lagrangian())
     {}
+
+    /** What the points have to carry besides. */
+    static void
+    add_fields(const GridSpec<dim> &spec, PointLayout &layout);
+
+    /** Before the first step on a grid that is_moved() from then on: points
+     * keep where in their cell they are and what they stand for. */
+    void
+    remember(MaterialPoints<dim> &points) const;
+
+    /** Sorts points that have moved since then into their cells. Between
+     * ranks, they are found only where the next one can see them: they go there
+     * over so many places on their way. Collective. */
+    void
+    sort(unsigned int n_places, MaterialPoints<dim> &points) const;
 
     /** The footprints of this step. */
     Footprints<dim>
@@ -49,7 +65,7 @@ namespace impm
     surroundings_of(const CellIterator        &cell,
                     const Discretization<dim> &discretization);
 
-    const bool has_boxes, boxes_stretch;
+    const bool has_boxes, boxes_stretch, keeps_motion;
 
     unsigned int                        epoch = 0; ///< of what follows
     std::vector<std::set<TriaIterator>> vertex_to_cells;

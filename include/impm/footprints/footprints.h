@@ -64,6 +64,29 @@ namespace impm
           bool                       any_corners);
 
     /**
+     * Goes on with nodes that have moved since the entries were made, with
+     * their hanging nodes and ghosts: slopes become those with respect to where
+     * the nodes are, by the mean deformation A of the points,
+     *
+     *   A_p = 1 + sum_I u_I grad S_pI,   grad S_pI <- A_p^-T grad S_pI,
+     *
+     * so that the deformations of steps in a row multiply to A.
+     */
+    void
+    move(const Vector &displacement);
+
+    bool
+    are_moved() const
+    {
+      return !moved_by.empty();
+    }
+
+    /** Largest |ln lambda| of the principal stretches of A (see move()) at the
+     * end of a step, on this rank. */
+    double
+    largest_distortion(const Vector &increment) const;
+
+    /**
      * Takes nodes out of the reach of points that would move them but give
      * them no mass: a point exactly on a face of its cell has slopes at the
      * nodes across, but no share in them. Where nothing else gives them mass,
@@ -135,7 +158,14 @@ namespace impm
     unsigned int n_limited_boxes = 0;
 
   private:
+    using Tensors = std::vector<dealii::Tensor<2, dim>>;
+
+    /** 1 + sum_I u_I grad S_pI of the points. */
+    Tensors
+    deformations(const Vector &u) const;
+
     std::vector<double>       values, gradients;
+    Tensors                   moved_by; ///< A, empty if nodes have not moved
     std::vector<unsigned int> cell_of_entry;
   };
 } // namespace impm

@@ -24,9 +24,10 @@ namespace impm
   /**
    * The background grid: a p4est forest of axis-aligned boxes. Between two
    * steps it may be stretched, refined, coarsened, sent to other ranks; a step
-   * computes on the Discretization that it gives then. It carries nothing from
-   * one step to the next, unless it is Lagrangian: then its nodes move with the
-   * material, and its cells may be any quadrilaterals.
+   * computes on the Discretization that it gives then. Its nodes may keep the
+   * motion that a step gives them: until it is reset, or, if it is Lagrangian,
+   * for ever; then its cells may be any quadrilaterals. Else it carries nothing
+   * from one step to the next.
    */
   template <int dim>
   class BackgroundGrid
@@ -49,6 +50,19 @@ namespace impm
       return cell->level() - base_level;
     }
 
+    /** Whether nodes are where steps have moved them. Points stay in their
+     * cells then. */
+    bool
+    is_moved() const
+    {
+      return moved;
+    }
+
+    /** Sends nodes back to the vertices, which go along with faces that have
+     * moved. Collective. */
+    void
+    reset();
+
     /** Refines and coarsens the cells that are flagged, and sends them to other
      * ranks. Collective. */
     void
@@ -61,19 +75,31 @@ namespace impm
 
     /**
      * Stretches the grid along the normal of a face (deal.II's number) so
-     * that the face comes to lie at `position` (m). Collective.
+     * that the face comes to lie at `position` (m); if it is moved, at the next
+     * reset. Collective.
      */
     void
     move_face(unsigned int face, double position);
 
+    /** Where the faces lie along their normals (m). */
+    using FacePositions = std::array<double, 2 * dim>;
+
     /**
      * Takes the cells that `triangulation.save()` has left in a file, and
-     * stretches them so that the faces lie at `faces` (m). Particles and
-     * nodal_state() are to be read from there next. Collective.
+     * stretches them so that face_of_vertices() are these. Particles and, if
+     * it was moved, motion are to be read from there next. Collective.
      */
     void
-    load(const std::string                 &file_name,
-         const std::array<double, 2 * dim> &faces);
+    load(const std::string   &file_name,
+         const FacePositions &faces_of_vertices,
+         bool                 was_moved);
+
+    /** Where a face was along its normal at the last reset (m). */
+    double
+    face_of_vertices(const unsigned int face) const
+    {
+      return face % 2 == 0 ? placed_lower[face / 2] : placed_upper[face / 2];
+    }
 
     /** Where a face lies along its normal (m). */
     double
@@ -82,15 +108,14 @@ namespace impm
       return face % 2 == 0 ? lower_corner[face / 2] : upper_corner[face / 2];
     }
 
-    /** What lasts at the nodes of a Lagrangian grid from step to step. */
+    /** What nodes that keep their motion take from step to step. */
     struct NodalState
     {
-      Vector displacement;           ///< since the start (m)
+      Vector displacement;           ///< since start or reset (m)
       Vector velocity, acceleration; ///< with inertia, after the first step
     };
 
-    /** Of a Lagrangian grid: takes what a step has made of its nodes.
-     * Collective. */
+    /** Keeps what a step has made of the nodes. Collective. */
     void
     carry(const StepResult &result);
 
@@ -100,14 +125,14 @@ namespace impm
       return state;
     }
 
-    /** After load(), with ghosts. Collective. */
+    /** After load() of a grid that was moved. Collective. */
     void
-    set_nodal_state(const NodalState &new_state);
+    set_motion(const NodalState &new_state, const FacePositions &faces);
 
     const MPI_Comm                                    communicator;
     dealii::parallel::distributed::Triangulation<dim> triangulation;
-    const bool                                        is_lagrangian;
-    const int finest_level; ///< that a cell may ever have
+    const bool is_lagrangian, keeps_motion;
+    const int  finest_level; ///< that a cell may ever have
 
     /** From unit cells to where the grid was made. */
     const std::unique_ptr<const dealii::Mapping<dim>> mapping;
@@ -122,19 +147,27 @@ namespace impm
     int
     make_coarse_cells();
 
+    void
+    set_corners(const FacePositions &faces);
+
     /**
-     * Puts every vertex, which stands there but for round-off if the grid
-     * reaches from one corner to another, to its fraction of the grid's extent:
-     * where it is must not depend on how it came there. Then maps it.
+     * Puts every vertex, which stands there but for round-off in the grid as it
+     * was placed last, to its fraction of the grid's extent: where it is must
+     * not depend on how it came there. Then maps it.
      */
     void
-    place_vertices(const dealii::Point<dim> &lower,
-                   const dealii::Point<dim> &upper);
+    place_vertices();
+
+    /** Makes the discretization of nodes that have moved. */
+    void
+    place_nodes();
 
     const GridSpec<dim>                        spec;
     std::vector<unsigned int>                  coarse_cells; ///< by axis
     dealii::Point<dim>                         lower_corner, upper_corner;
+    dealii::Point<dim>                         placed_lower, placed_upper;
     int                                        base_level = 0;
+    bool                                       moved      = false;
     NodalState                                 state;
     std::shared_ptr<const Discretization<dim>> current;
   };

@@ -46,6 +46,15 @@ namespace impm
     void
     move(double from, double to);
 
+    /** Sorts the points into the cells of a grid that has changed. Collective.
+     */
+    void
+    sort();
+
+    /** Largest component of any displacement from one time to another (m). */
+    double
+    largest_displacement(double from, double to) const;
+
     /**
      * The part of a step between two times after which the increment `u` brings
      * the first free node to a box, taking its way as straight; 1 if there is

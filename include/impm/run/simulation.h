@@ -73,6 +73,22 @@ namespace impm
     void
     resample();
 
+    /** After a step: whether nodes that have kept their motion must go back to
+     * the grid now. Collective. */
+    bool
+    reset_is_due() const;
+
+    /** Sends them back and sorts points and rigid bodies into the cells. */
+    void
+    reset_grid();
+
+    /** Whether nodes are away from a grid to which they can go back. */
+    bool
+    is_off_grid() const
+    {
+      return grid.is_moved() && !grid.is_lagrangian;
+    }
+
     /** Hands the result of the step to points and grid. */
     void
     commit();
@@ -145,17 +161,34 @@ namespace impm
     MaterialPoints<dim>                    points;
     RigidBodies<dim>                       rigid;
     LoadBalance<dim>                       balance;
-    double      best_imbalance = 1; ///< that could be reached the last time
-    double      time           = 0;
-    StepControl control;
+    double       best_imbalance = 1; ///< that could be reached the last time
+    unsigned int adapted_step   = 0; ///< the last that began by it
+    double       time           = 0;
+    StepControl  control;
 
     const std::unique_ptr<TimeIntegrator> integrator;
     FootprintBuilder<dim>                 builder;
     WorkCounts                            counts;
     std::unique_ptr<StepProblem<dim>>     problem; ///< of this step
     StepResult                            result;
-    WorkDone<dim>                         work;
-    PointChanges                          resampled; ///< since the start
+
+    /** Of nodes that keep their motion, since they were on the grid. */
+    struct OffGrid
+    {
+      double       start    = 0; ///< (s)
+      unsigned int n_steps  = 0;
+      double       in_cells = 0; ///< see GridMotion
+
+      template <class Archive>
+      void
+      serialize(Archive &archive, const unsigned int /*version*/)
+      {
+        archive &start &n_steps &in_cells;
+      }
+    } off_grid;
+
+    WorkDone<dim> work;
+    PointChanges  resampled; ///< since the start
 
     Pictures<dim>             pictures;
     History<dim>              history;

@@ -9,6 +9,46 @@ namespace impm
                                       {"MPM", GridMethod::mpm},
                                       {"Lagrangian", GridMethod::lagrangian}});
 
+    const Choice<GridReset> resets("Reset",
+                                   {{"every step", GridReset::every_step},
+                                    {"interval", GridReset::interval},
+                                    {"distortion", GridReset::distortion}});
+
+    template <int dim>
+    void
+    add_reset(const Section &section, GridSpec<dim> &grid)
+    {
+      section.add(resets,
+                  grid.reset,
+                  "When nodes go back to the grid, and points are sorted into "
+                  "its cells. Until then points keep their places in their "
+                  "cells, as in finite elements, and nodes their velocities; "
+                  "bodies do not meet, points do not split, the grid does not "
+                  "adapt.");
+      if (section.may_be(resets, GridReset::every_step) &&
+          section.get("Reset") != "any")
+        return;
+      if (section.may_be(resets, GridReset::interval))
+        section.add("Steps between resets",
+                    grid.reset_interval,
+                    {"10", 1},
+                    "Number of steps from one reset to the next.");
+      if (section.may_be(resets, GridReset::distortion))
+        section.add("Largest distortion",
+                    grid.reset_distortion,
+                    {"0.1", 1e-6, 10},
+                    "Largest |ln lambda| of the principal stretches lambda of "
+                    "a cell, at any of its points, since the last reset: the "
+                    "grid is reset after the step that exceeds it.");
+      section.add("Largest motion",
+                  grid.reset_motion,
+                  {"1", 0.1, 1000},
+                  "Of a point since the last reset, in cells: the grid is "
+                  "reset before the step that would exceed it. Rigid bodies "
+                  "move by no more than a cell. Above 1, what moves may pass "
+                  "into other material or through it before it feels it.");
+    }
+
     template <int dim>
     void
     add_box(const Section &section, GridSpec<dim> &grid)
@@ -66,11 +106,14 @@ namespace impm
                   "Whether the boxes of the points stretch with them "
                   "(with the diagonal of U).");
     if (!grid.is_lagrangian())
-      section.add("Largest imbalance",
-                  grid.largest_imbalance,
-                  {"1.2", 1},
-                  "Work of the busiest rank over the mean, above which cells "
-                  "are sent to other ranks.");
+      {
+        add_reset(section, grid);
+        section.add("Largest imbalance",
+                    grid.largest_imbalance,
+                    {"1.2", 1},
+                    "Work of the busiest rank over the mean, above which cells "
+                    "are sent to other ranks.");
+      }
     section.add("Local refinements",
                 grid.refinement_levels,
                 {"0", 0, 10},

@@ -158,6 +158,28 @@ TEST(ParallelMpi, GridAndPointsAdapt)
 }
 
 
+// Nodes that keep their motion for some steps, over hanging nodes, under a face
+// and a body, on cells that change at resets.
+TEST(ParallelMpi, GridIsResetNowAndThen)
+{
+  const Overrides seldom = {"Grid/Reset=interval",
+                            "Grid/Steps between resets=2",
+                            "Grid/Largest motion=10"},
+                  boxes  = {"Grid/Method=GIMP",
+                            "Materials/steel/F-bar=true",
+                            "Bodies/billet/Point adaptation=split",
+                            "Grid/Adaptation/Criteria=surface",
+                            "Grid/Adaptation/surface/Kind=free surface"};
+  compare<2>(upsetting(), platen_is_a_face + split_cells + seldom);
+  compare<2>(upsetting(), platen_is_a_face + seldom + boxes);
+  compare<2>(upsetting(), platen_is_a_body + seldom + boxes);
+  compare<2>(upsetting(),
+             platen_is_a_face + split_cells + seldom +
+               Overrides{"Time/Integrator=Newmark",
+                         "Time/Acceleration from=points"});
+}
+
+
 TEST(ParallelMpi, LocallyRefinedGrid)
 {
   compare<2>(upsetting(), platen_is_a_face + split_cells);

@@ -255,6 +255,27 @@ TEST(RestartMpi, AdaptedGrid)
             *std::max_element(dofs.begin(), dofs.end()));
 }
 
+// In the middle between two resets of a grid whose face has moved.
+TEST(RestartMpi, GridThatIsMoved)
+{
+  const Overrides seldom = {"Grid/Reset=interval",
+                            "Grid/Steps between resets=3"};
+  expect_restarts<2>("plane strain",
+                     pressed + top_moves_the_grid + plastic + seldom);
+  expect_restarts<2>("axisymmetric",
+                     pressed + top_moves_the_grid + with_inertia + seldom +
+                       Overrides{"Grid/Method=GIMP",
+                                 "Bodies/block/Point adaptation=split",
+                                 "Grid/Adaptation/Criteria=surface",
+                                 "Grid/Adaptation/surface/Kind=free surface"});
+  const auto whole = expect_restarts<2>("plane strain",
+                                        flies + with_inertia + seldom +
+                                          Overrides{"Time/Transfer=APIC",
+                                                    "Grid/Method=GIMP",
+                                                    "Grid/Largest motion=3"});
+  EXPECT_EQ(whole.summary.at("grid_resets"), 3);
+}
+
 TEST(RestartMpi, ApicDynamics)
 {
   expect_restarts<2>("plane strain",

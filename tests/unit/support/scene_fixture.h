@@ -274,7 +274,7 @@ namespace impm
       u.update_ghost_values();
       const auto result = problem->end_motion(u);
       advance_points(*problem, result, scene.time, points);
-      if (grid.is_lagrangian)
+      if (grid.keeps_motion)
         policy.advance(grid, result, time, time + dt);
       points.sort();
       time += dt;
@@ -284,6 +284,8 @@ namespace impm
     begin_step()
     {
       problem.reset();
+      if (!grid.is_moved())
+        builder.remember(points);
       problem = std::make_unique<StepProblem<dim>>(
         scene, grid, points, rigid, *integrator, builder, counts, time, dt);
     }

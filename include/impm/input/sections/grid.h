@@ -19,6 +19,14 @@ namespace impm
     lagrangian ///< a Gauss point of a grid that stays with the material
   };
 
+  /** When nodes that have moved with the material go back to the grid. */
+  enum class GridReset
+  {
+    every_step,
+    interval,  ///< after so many steps
+    distortion ///< when a cell has been deformed so much
+  };
+
   /** The background grid at the start: a box of equal cells. */
   template <int dim>
   struct GridSpec
@@ -34,6 +42,12 @@ namespace impm
     unsigned int                                 refinement_levels = 0;
     std::shared_ptr<dealii::FunctionParser<dim>> refine_where;
 
+    GridReset    reset          = GridReset::every_step;
+    unsigned int reset_interval = 1; ///< in steps
+    /** Largest logarithm of a principal stretch since the reset. */
+    double reset_distortion = 0;
+    double reset_motion     = 1; ///< of a point, in cells
+
     /** Of the ranks, before cells are sent to others. */
     double largest_imbalance = 1.2;
 
@@ -44,6 +58,13 @@ namespace impm
     is_lagrangian() const
     {
       return method == GridMethod::lagrangian;
+    }
+
+    /** Whether nodes may go on from where a step has moved them. */
+    bool
+    keeps_motion() const
+    {
+      return is_lagrangian() || reset != GridReset::every_step;
     }
   };
 

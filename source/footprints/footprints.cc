@@ -289,6 +289,7 @@ namespace impm
         for (unsigned int p = 0; p < at_points.size(); ++p)
           inverse_radius[p] = 1 / (1 / inverse_radius[p] + at_points[p][0]);
       }
+    moved    = true;
     moved_by = deformations(displacement);
     for (unsigned int e = 0; e < point.size(); ++e)
       {
@@ -312,7 +313,7 @@ namespace impm
     const Tensors step    = deformations(increment);
     for (unsigned int p = 0; p < step.size(); ++p)
       {
-        const auto A = moved_by.empty() ? step[p] : step[p] * moved_by[p];
+        const auto A = moved ? step[p] * moved_by[p] : step[p];
         for (const double square : eigenvalues(symmetrize(transpose(A) * A)))
           largest = std::max(largest, std::abs(std::log(square)) / 2);
       }

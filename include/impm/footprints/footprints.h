@@ -75,10 +75,11 @@ namespace impm
     void
     move(const Vector &displacement);
 
+    /** Alike on all ranks. */
     bool
     are_moved() const
     {
-      return !moved_by.empty();
+      return moved;
     }
 
     /** Largest |ln lambda| of the principal stretches of A (see move()) at the
@@ -165,7 +166,8 @@ namespace impm
     deformations(const Vector &u) const;
 
     std::vector<double>       values, gradients;
-    Tensors                   moved_by; ///< A, empty if nodes have not moved
+    bool                      moved = false;
+    Tensors                   moved_by; ///< A, if nodes have moved
     std::vector<unsigned int> cell_of_entry;
   };
 } // namespace impm

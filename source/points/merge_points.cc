@@ -2,6 +2,7 @@
 
 #include <impm/points/adapt_points.h>
 #include <impm/points/point_domains.h>
+#include <impm/points/point_shape.h>
 
 namespace impm
 {
@@ -28,7 +29,13 @@ namespace impm
              particle != points.sorted.particles.end();
              ++particle)
           particles.push_back(particle);
-        // History is compared with the largest that any point has.
+        // History is compared with the most that any point has gathered.
+        for (const auto &body : bodies)
+          {
+            fresh.emplace_back(points.history_size());
+            if (body.material)
+              body.material->initialize_history(fresh.back().data());
+          }
         for (const auto &field : points.history_layout.fields())
           {
             double largest = 0;
@@ -56,7 +63,9 @@ namespace impm
                   for (unsigned int p = begin; p < end; ++p)
                     if (points.body(p) == b)
                       some.push_back(p);
-                  merge(bodies[b], extents_of<dim>(cell), some);
+                  merge(bodies[b],
+                        {extents_of<dim>(cell), bodies[b].points_across},
+                        some);
                 }
           }
         changes.merges = Utilities::MPI::sum(changes.merges, grid.communicator);
@@ -79,7 +88,8 @@ namespace impm
     private:
       static constexpr unsigned int no_point = numbers::invalid_unsigned_int;
 
-      /** Of what two points have in a field of the history, or its size. */
+      /** Of what two points have in a field of the history; of one point, from
+       * what it had at the start. */
       double
       distance(const PointLayout::Field &field,
                const unsigned int        p,
@@ -88,9 +98,11 @@ namespace impm
         double sum = 0;
         for (unsigned int i = 0; i < field.n_components; ++i)
           {
-            const unsigned int k = points.offset_history + field.offset + i;
-            const double       difference =
-              points.fields(p)[k] - (q == no_point ? 0 : points.fields(q)[k]);
+            const unsigned int k     = points.offset_history + field.offset + i;
+            const double       other = q == no_point ?
+                                         fresh[points.body(p)][field.offset + i] :
+                                         points.fields(q)[k];
+            const double       difference = points.fields(p)[k] - other;
             sum += difference * difference;
           }
         return std::sqrt(sum);
@@ -101,8 +113,11 @@ namespace impm
                       const unsigned int q,
                       const double       tolerance) const
       {
-        if ((deformation_gradient(points, p) - deformation_gradient(points, q))
-              .norm() > tolerance)
+        const auto F = deformation_gradient(points, p),
+                   G = deformation_gradient(points, q);
+        if ((points.material(p).depends_on_shape() ?
+               (F - G).norm() :
+               std::abs(determinant(F) - determinant(G))) > tolerance)
           return false;
         for (unsigned int i = 0; i < scales.size(); ++i)
           if (distance(points.history_layout.fields()[i], p, q) >
@@ -111,35 +126,58 @@ namespace impm
         return true;
       }
 
-      /** Whether two points make one box. */
-      bool
-      fit(const BodySpec<dim>  &body,
-          const Tensor<1, dim> &cell,
-          const unsigned int    axis,
-          const unsigned int    p,
-          const unsigned int    q) const
+      PointShape<dim>
+      shape(const unsigned int p) const
       {
-        const double *first = points.fields(p), *second = points.fields(q);
-        const auto    edge =
-          0.5 * (fields.edge(first, axis) + fields.edge(second, axis));
-        // Well below the length at which points are split.
-        if (span<dim>(2 * edge, cell) > 0.8 / body.points_across)
-          return false;
-        auto gap = particles[q]->get_location() - particles[p]->get_location();
-        gap -= (gap * edge < 0 ? -1 : 1) * edge;
+        PointShape<dim> shape;
+        shape.volume      = points.initial_volume(p);
+        shape.place       = place(p);
+        shape.domain      = points.vector(p, fields.domain);
+        shape.deformation = deformation_gradient(points, p);
+        shape.present_measure =
+          present_measure(points, p, particles[p]->get_location());
+        return shape;
+      }
+
+      /** Which part of its cell a point lies in: there is one for each point
+       * that is wished. */
+      std::array<int, dim>
+      part_of_cell(const MergeRoom<dim> &room, const unsigned int p) const
+      {
+        const auto x = particles[p]->get_location() -
+                       particles[p]->get_surrounding_cell()->vertex(0);
+        std::array<int, dim> part;
         for (unsigned int d = 0; d < dim; ++d)
+          part[d] = std::floor(x[d] / room.cell[d] *
+                               std::max(1., std::round(room.points_across)));
+        return part;
+      }
+
+      /**
+       * The shape of one point for two, if there is one. Where shapes count
+       * there is a pass for each axis of the start. Else points of one part of
+       * a cell merge first, wherever they lie there, then neighbours.
+       */
+      std::optional<PointShape<dim>>
+      merged_shape(const BodySpec<dim>  &body,
+                   const MergeRoom<dim> &room,
+                   const unsigned int    pass,
+                   const unsigned int    p,
+                   const unsigned int    q) const
+      {
+        std::optional<PointShape<dim>> result;
+        if (body.material->depends_on_shape())
+          result = merge_along(pass, shape(p), shape(q), room);
+        else
           {
-            double extent = 0;
-            for (unsigned int a = 0; a < dim; ++a)
-              extent = std::max(extent, std::abs(fields.edge(first, a)[d]));
-            if (std::abs(gap[d]) > 0.25 * extent)
-              return false;
-            if (d != axis &&
-                std::abs(first[fields.domain + d] - second[fields.domain + d]) >
-                  0.1 * first[fields.domain + d])
-              return false;
+            const bool same_part =
+              part_of_cell(room, p) == part_of_cell(room, q);
+            if (pass > 0 || same_part)
+              result = merge_to_box(shape(p), shape(q), room, !same_part);
           }
-        return have_same_state(p, q, body.merge_tolerance);
+        if (result && !have_same_state(p, q, body.merge_tolerance))
+          result.reset();
+        return result;
       }
 
       Tensor<1, 3>
@@ -212,7 +250,7 @@ namespace impm
       /** Points of a body in a cell. */
       void
       merge(const BodySpec<dim>      &body,
-            const Tensor<1, dim>     &cell,
+            const MergeRoom<dim>     &room,
             std::vector<unsigned int> some)
       {
         // Fewer could not take over the angular momentum.
@@ -228,29 +266,32 @@ namespace impm
             if (determinant(inertia) < 1e-6 * std::pow(trace(inertia), 3))
               return;
           }
-        unsigned int n   = some.size();
-        bool         any = false;
-        for (unsigned int axis = 0; axis < dim; ++axis)
+        unsigned int       n   = some.size();
+        bool               any = false;
+        const unsigned int n_passes =
+          body.material->depends_on_shape() ? dim : 2;
+        for (unsigned int pass = 0; pass < n_passes; ++pass)
           {
             // Whatever the order in which the points stand in their cell.
             std::sort(some.begin(), some.end(), [&](auto p, auto q) {
               const auto x = place(p), y = place(q);
               for (unsigned int d = 0; d < dim; ++d)
-                if (const auto a = (axis + d) % dim; x[a] != y[a])
+                if (const auto a = (pass + d) % dim; x[a] != y[a])
                   return x[a] < y[a];
               return particles[p]->get_id() < particles[q]->get_id();
             });
             for (unsigned int i = 0; i < some.size(); ++i)
               for (unsigned int j = i + 1; j < some.size(); ++j)
-                if (n > dim + 1 && !gone[some[i]] && !gone[some[j]] &&
-                    fit(body, cell, axis, some[i], some[j]))
-                  {
-                    if (!any)
-                      count_energies(some, -1);
-                    any = true;
-                    spin += join(axis, some[i], some[j]);
-                    --n;
-                  }
+                if (n > dim + 1 && !gone[some[i]] && !gone[some[j]])
+                  if (const auto shape =
+                        merged_shape(body, room, pass, some[i], some[j]))
+                    {
+                      if (!any)
+                        count_energies(some, -1);
+                      any = true;
+                      spin += join(*shape, some[i], some[j]);
+                      --n;
+                    }
           }
         if (!any)
           return;
@@ -270,10 +311,10 @@ namespace impm
         count_energies(some, 1);
       }
 
-      /** Makes one of two points; returns the angular momentum of their
-       * relative motion. */
+      /** Makes one of two points, of a shape; returns the angular momentum of
+       * their relative motion. */
       Tensor<1, 3>
-      join(const unsigned int axis, unsigned int p, unsigned int q)
+      join(const PointShape<dim> &shape, unsigned int p, unsigned int q)
       {
         if (particles[p]->get_id() > particles[q]->get_id())
           std::swap(p, q);
@@ -281,38 +322,20 @@ namespace impm
         ++changes.merges;
         double       *to   = points.fields(p);
         const double *from = points.fields(q);
-        const double  whole =
-          points.initial_volume(p) + points.initial_volume(q);
-        const double part = points.initial_volume(q) / whole;
-        Tensor<1, 3> spin;
+        const double  part = points.initial_volume(q) / shape.volume;
+        Tensor<1, 3>  spin;
         if (points.offset_velocity > 0)
           spin = points.mass(p) * part *
                  cross_product_3d(in_space(place(q) - place(p)),
                                   velocity(q) - velocity(p));
-        const auto volume = [&](const unsigned int r) {
-          return points.initial_volume(r) *
-                 determinant(deformation_gradient(points, r));
-        };
-        const double present = volume(p) + volume(q);
-        particles[p]->set_location(particles[p]->get_location() +
-                                   part * (place(q) - place(p)));
+        particles[p]->set_location(Point<dim>(shape.place));
         for (const auto i : fields.common)
           to[i] += part * (from[i] - to[i]);
         for (const auto i : fields.shared)
           to[i] += from[i];
-        for (unsigned int d = 0; d < dim; ++d)
-          {
-            double &extent = to[fields.domain + d];
-            extent += d == axis ? from[fields.domain + d] :
-                                  part * (from[fields.domain + d] - extent);
-          }
-        // The mean of F has less volume.
-        auto         F     = deformation_gradient(points, p);
-        const double scale = std::pow(present / volume(p), 1. / dim);
-        for (unsigned int i = 0; i < dim; ++i)
-          for (unsigned int j = 0; j < dim; ++j)
-            F[i][j] *= scale;
-        points.layout.store_tensor(F, to + points.offset_deformation);
+        points.set_vector(p, fields.domain, shape.domain);
+        points.layout.store_tensor(shape.deformation,
+                                   to + points.offset_deformation);
         return spin;
       }
 
@@ -321,7 +344,9 @@ namespace impm
       const PointDomains<dim>    fields;
       MaterialPoints<dim>       &points;
       std::vector<char>          gone;
-      std::vector<double>        scales; ///< of the fields of the history
+      /** By body, the history of an undeformed point. */
+      std::vector<std::vector<double>> fresh;
+      std::vector<double>              scales; ///< of the fields of the history
       std::vector<typename Particles::ParticleHandler<dim>::particle_iterator>
                    particles;
       PointChanges changes;

@@ -139,6 +139,12 @@ namespace impm
               hardening.work(history[plastic_offset])};
     }
 
+    bool
+    depends_on_shape() const override
+    {
+      return false;
+    }
+
   private:
     const HenckyElasticity elasticity;
     const LinearHardening  hardening;

@@ -166,6 +166,17 @@ namespace impm
       return true;
     }
 
+    /**
+     * Whether stress and energy depend on F at the start of a step, by more
+     * than its determinant: where they do not, F may begin anew from another
+     * shape of the same volume.
+     */
+    virtual bool
+    depends_on_shape() const
+    {
+      return true;
+    }
+
     /** Whether the stress derives from Response::potential. */
     virtual bool
     has_potential() const

@@ -139,6 +139,12 @@ namespace impm
       return false;
     }
 
+    bool
+    depends_on_shape() const override
+    {
+      return false;
+    }
+
   private:
     /** lambda tr(rate) 1 + 2 mu rate. */
     dealii::SymmetricTensor<2, 3>

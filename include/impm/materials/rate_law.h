@@ -45,6 +45,12 @@ namespace impm
               hardening ? plastic_work(history[plastic_offset]) : 0.};
     }
 
+    bool
+    depends_on_shape() const override
+    {
+      return false;
+    }
+
   protected:
     /** The stress at the end of a step, and how it follows the trial stress. */
     struct Return

@@ -219,6 +219,38 @@ TEST(AllLaws, WithoutAnIncrementTheStressIsTheOldOne)
 }
 
 
+TEST(AllLaws, ShapeCountsWhereTheySaySo)
+{
+  const auto shear   = one + Tensor<2, 3>({{0, 0.4, 0}, {0, 0, 0}, {0, 0, 0}});
+  const auto stretch = 1.02 * one;
+  for (const auto &named : all_laws())
+    {
+      SCOPED_TRACE(named.name);
+      LawPoint first(named), second(named);
+      first.F  = stretch;
+      second.F = stretch * shear;
+      ASSERT_TRUE(first.evaluate(one + 0.01 * shear));
+      ASSERT_TRUE(second.evaluate(one + 0.01 * shear));
+      const double difference =
+        (first.response.kirchhoff_stress - second.response.kirchhoff_stress)
+          .norm();
+      const double energy =
+        std::abs(first.law.energy(first.trial_F, first.history.data()).stored -
+                 first.law.energy(second.trial_F, first.history.data()).stored);
+      if (named.law->depends_on_shape())
+        {
+          EXPECT_GT(difference, 1e-3);
+          EXPECT_GT(energy, 1e-3);
+        }
+      else
+        {
+          EXPECT_LT(difference, 1e-14);
+          EXPECT_LT(energy, 1e-14);
+        }
+    }
+}
+
+
 TEST(AllLaws, RefuseWhatHasNoStress)
 {
   for (const auto &named : all_laws())

@@ -268,6 +268,151 @@ TEST(AdaptPointsMpi, MergingKeepsSums)
 }
 
 
+namespace
+{
+  const Overrides fluid = {"Materials/rubber/Law=Newtonian fluid",
+                           "Materials/rubber/Bulk modulus=1",
+                           "Materials/rubber/Viscosity=0.3"};
+
+  /** Deforms every point in another way, with nearly the same volume. */
+  template <int dim>
+  void
+  shear(Model<dim> &model)
+  {
+    auto &points = model.points;
+    for (unsigned int p = 0; p < points.size(); ++p)
+      {
+        std::mt19937                           generator(points.id(p));
+        std::uniform_real_distribution<double> uniform(-1, 1);
+        Tensor<2, 3>                           F = unit_symmetric_tensor<3>();
+        F[0][0] += 0.01 * uniform(generator);
+        F[0][1]            = 2 * uniform(generator);
+        Tensor<2, 3> turn  = unit_symmetric_tensor<3>();
+        const double angle = 3 * uniform(generator);
+        turn[0][0] = turn[1][1] = std::cos(angle);
+        turn[1][0]              = std::sin(angle);
+        turn[0][1]              = -turn[1][0];
+        F                       = turn * F;
+        if (points.layout.geometry != GeometryKind::plane_strain)
+          F[2][2] += 0.01 * uniform(generator);
+        points.layout.store_tensor(F,
+                                   points.fields(p) +
+                                     points.offset_deformation);
+        for (unsigned int i = 0; i < points.history_size(); ++i)
+          points.fields(p)[points.offset_history + i] +=
+            1e-3 * (2 + uniform(generator));
+        for (unsigned int c = 0; points.offset_velocity > 0 && c < dim; ++c)
+          points.fields(p)[points.offset_velocity + c] += uniform(generator);
+      }
+  }
+
+  /** Integral of the Cauchy stress. */
+  template <int dim>
+  SymmetricTensor<2, 3>
+  total_stress(const Model<dim> &model)
+  {
+    const auto           &points = model.points;
+    const auto            one    = Tensor<2, 3>(unit_symmetric_tensor<3>());
+    SymmetricTensor<2, 3> sum;
+    std::vector<double>   end(points.history_size());
+    for (unsigned int p = 0; p < points.size(); ++p)
+      {
+        Material::Response response;
+        EXPECT_TRUE(points.material(p).evaluate_one(
+          {one,
+           deformation_gradient(points, p),
+           0.,
+           points.fields(p) + points.offset_history,
+           end.data()},
+          false,
+          response));
+        sum += points.initial_volume(p) * response.kirchhoff_stress;
+      }
+    for (unsigned int i = 0; i < sum.n_independent_components; ++i)
+      sum.access_raw_entry(i) =
+        Utilities::MPI::sum(sum.access_raw_entry(i), points.communicator);
+    return sum;
+  }
+
+  template <int dim>
+  void
+  merge_sheared(const std::string &kind, const Overrides &overrides)
+  {
+    std::string all = kind;
+    for (const auto &override : overrides)
+      all += ", " + override;
+    SCOPED_TRACE(all);
+    Model<dim> model(block_scene(kind),
+                     merging + overrides +
+                       Overrides{"Bodies/block/Merge tolerance=1"});
+    shear(model);
+    const auto n      = model.points.sorted.n_global();
+    const auto before = sums_of(model);
+    const auto stress = total_stress(model);
+    const auto changes =
+      merge_points(model.scene.bodies, model.grid, model.points);
+    EXPECT_EQ(model.points.sorted.n_global(), n - changes.merges);
+    // As many as are wished; all are too short to be split.
+    EXPECT_EQ(model.points.sorted.n_global(),
+              model.grid.triangulation.n_global_active_cells() << dim);
+    EXPECT_EQ(split_points(model.scene.bodies, model.grid, model.points).splits,
+              0u);
+    expect_kept(before,
+                sums_of(model),
+                changes,
+                kind != "axisymmetric" && model.points.offset_affine == 0,
+                true);
+    EXPECT_LT((total_stress(model) - stress).norm(), 1e-3 * stress.norm());
+    // Boxes are what the points fill.
+    const PointDomains<dim> domains(model.points);
+    unsigned int            p = 0;
+    for (const auto &particle : model.points.sorted.particles)
+      {
+        double box = 1;
+        for (unsigned int d = 0; d < dim; ++d)
+          box *= domains.edge(model.points.fields(p), d)[d];
+        EXPECT_NEAR(present_measure(model.points, p, particle.get_location()) /
+                      box,
+                    1.,
+                    kind == "axisymmetric" ? 0.1 : 1e-12);
+        ++p;
+      }
+  }
+} // namespace
+
+// Where the law does not read the shape of F, points that have been sheared in
+// every way merge until there are as many as are wished.
+TEST(AdaptPointsMpi, MergingAfterShearKeepsSums)
+{
+  const Overrides jaumann = {"Materials/rubber/Law=Jaumann elastic"};
+  merge_sheared<2>("plane strain", plastic);
+  merge_sheared<2>("plane strain", plastic + with_inertia + refined);
+  merge_sheared<2>("plane stress", plastic + with_inertia);
+  merge_sheared<2>("axisymmetric", plastic + with_inertia);
+  merge_sheared<3>("3D",
+                   plastic + with_inertia + Overrides{"Grid/Cells=2, 2, 2"});
+  merge_sheared<2>("plane strain",
+                   jaumann + with_inertia + Overrides{"Time/Transfer=APIC"});
+}
+
+
+// A law that reads the shape of F keeps such points apart, and every law those
+// whose histories differ.
+TEST(AdaptPointsMpi, OnlyWhatIsTheSameStateMergesAfterShear)
+{
+  const auto merges = [](const Overrides &overrides) {
+    Model<2> model(block_scene("plane strain"), merging + overrides);
+    shear(model);
+    return merge_points(model.scene.bodies, model.grid, model.points).merges;
+  };
+  EXPECT_EQ(merges({}), 0u);
+  EXPECT_EQ(merges(plastic + Overrides{"Bodies/block/Merge tolerance=1e-4"}),
+            0u);
+  EXPECT_GT(merges(plastic + Overrides{"Bodies/block/Merge tolerance=0.7"}),
+            100u);
+}
+
+
 // Points whose states differ stay apart.
 TEST(AdaptPointsMpi, DifferentStatesAreNotMerged)
 {
@@ -282,11 +427,15 @@ TEST(AdaptPointsMpi, DifferentStatesAreNotMerged)
 // One rank or several: the same points.
 TEST(AdaptPointsMpi, SameOnAnyNumberOfRanks)
 {
-  const auto places = [](const MPI_Comm communicator) {
+  const auto places = [](const bool sheared, const MPI_Comm communicator) {
     Model<2> model(block_scene("plane strain"),
-                   merging + Overrides{"Bodies/block/Points per cell=6"},
+                   merging + Overrides{"Bodies/block/Points per cell=6"} +
+                     (sheared ? plastic : Overrides()),
                    communicator);
-    deform(model, 1.5);
+    if (sheared)
+      shear(model);
+    else
+      deform(model, 1.5);
     for (unsigned int i = 0; i < 2; ++i)
       adapt_points(model.scene.bodies, model.grid, model.points);
     std::vector<std::array<double, 3>> mine, all;
@@ -303,11 +452,15 @@ TEST(AdaptPointsMpi, SameOnAnyNumberOfRanks)
     std::sort(all.begin(), all.end());
     return all;
   };
-  const auto one = places(MPI_COMM_SELF), several = places(MPI_COMM_WORLD);
-  ASSERT_EQ(one.size(), several.size());
-  for (unsigned int i = 0; i < one.size(); ++i)
-    for (unsigned int c = 0; c < 3; ++c)
-      EXPECT_NEAR(one[i][c], several[i][c], 1e-13);
+  for (const bool sheared : {false, true})
+    {
+      const auto one     = places(sheared, MPI_COMM_SELF),
+                 several = places(sheared, MPI_COMM_WORLD);
+      ASSERT_EQ(one.size(), several.size());
+      for (unsigned int i = 0; i < one.size(); ++i)
+        for (unsigned int c = 0; c < 3; ++c)
+          EXPECT_NEAR(one[i][c], several[i][c], 1e-13);
+    }
 }
 
 

@@ -54,7 +54,10 @@ namespace impm
   /**
    * Merges points of bodies that ask for it: two points of a cell whose domains
    * make one box that is still short enough not to split, and whose deformation
-   * and history differ by less than a tolerance. Mass, volume, centre of mass
+   * and history differ by less than a tolerance. Where the law does not depend
+   * on the shape of F (Material::depends_on_shape()), domains of any shape make
+   * a box, whose F begins anew, as long as there are more points than are
+   * wished and their J and history differ by less. Mass, volume, centre of mass
    * and momentum are kept; the angular momentum of their relative motion is
    * given to the points of the cell as a rotation about their common centre.
    * Each cell is looked at alone. Collective.

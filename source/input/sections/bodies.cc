@@ -144,11 +144,13 @@ namespace impm
                     "A point is halved across an edge of which fewer fit "
                     "across the cell, by a tenth.");
       if (body.adaptation == PointAdaptation::split_and_merge)
-        section.add("Merge tolerance",
-                    body.merge_tolerance,
-                    {"0.05", 0, 1},
-                    "Points are merged whose F, and whose history in parts of "
-                    "the largest of any point, differ by no more.");
+        section.add(
+          "Merge tolerance",
+          body.merge_tolerance,
+          {"0.05", 0, 1},
+          "Points are merged whose F, or J for laws that read no more "
+          "of it, and whose history, in parts of the most that any "
+          "point has gathered, differ by no more.");
     }
 
     template <int dim>

@@ -270,10 +270,6 @@ TEST(AdaptPointsMpi, MergingKeepsSums)
 
 namespace
 {
-  const Overrides fluid = {"Materials/rubber/Law=Newtonian fluid",
-                           "Materials/rubber/Bulk modulus=1",
-                           "Materials/rubber/Viscosity=0.3"};
-
   /** Deforms every point in another way, with nearly the same volume. */
   template <int dim>
   void
@@ -336,13 +332,15 @@ namespace
 
   template <int dim>
   void
-  merge_sheared(const std::string &kind, const Overrides &overrides)
+  merge_sheared(const std::string &kind,
+                const Overrides   &overrides,
+                std::string (*const scene)(const std::string &) = block_scene)
   {
     std::string all = kind;
     for (const auto &override : overrides)
       all += ", " + override;
     SCOPED_TRACE(all);
-    Model<dim> model(block_scene(kind),
+    Model<dim> model(scene(kind),
                      merging + overrides +
                        Overrides{"Bodies/block/Merge tolerance=1"});
     shear(model);
@@ -388,6 +386,7 @@ TEST(AdaptPointsMpi, MergingAfterShearKeepsSums)
   merge_sheared<2>("plane strain", plastic);
   merge_sheared<2>("plane strain", plastic + with_inertia + refined);
   merge_sheared<2>("plane stress", plastic + with_inertia);
+  merge_sheared<2>("axisymmetric", with_inertia, fluid_scene);
   merge_sheared<2>("axisymmetric", plastic + with_inertia);
   merge_sheared<3>("3D",
                    plastic + with_inertia + Overrides{"Grid/Cells=2, 2, 2"});

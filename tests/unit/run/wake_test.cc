@@ -5,8 +5,8 @@
 #include "run_file.h"
 
 // Behind a disc that is drawn through a block the grid coarsens and points
-// merge: there are as many as before. Without merging there are 21,050 points
-// at the end, and the run takes four times as long.
+// merge: there are about as many as before. Without merging there are 21,050 at
+// the end.
 TEST(Wake, GridAndPointsRecover)
 {
   const auto  columns = run_file("wake");

@@ -14,6 +14,15 @@ comes the largest difference of s1 - s2 from its mirror image in the axis, over 
 largest value, and the root mean square of its difference from that of the first
 directory, over that of s1 - s2.
 
+    contrib/hopkinson_disks.py --difference UNIFORM OTHER... fringes.png
+
+compares runs whose points need not be those of the first, on adaptive grids: for each
+time and run the difference of s1 - s2 from the first run, L2, relative. "Points": at the
+points of the first run, linear between those of the other; "cells": of the means over the
+cells of the first run, which leaves out what oscillates within a cell; "fringes": of the
+pattern itself, a cosine of s1 - s2, cell by cell. The picture has the fringes and the
+grids in the upper halves of the disks, and the differences of s1 - s2 in the lower ones.
+
 Without a FILE.png at the end it only measures. Needs Debian's python3-vtk9 and
 python3-matplotlib.
 """
@@ -27,6 +36,8 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy
+from matplotlib.collections import LineCollection
+from matplotlib.tri import LinearTriInterpolator, Triangulation
 from vtk.util.numpy_support import vtk_to_numpy
 
 from plot_points import read
@@ -34,16 +45,22 @@ from plot_points import read
 FRAMES = (1.9, 4.8, 6.7)
 TRANSIT = 1e-6  # of a longitudinal wave through a disk (s)
 PER_CELL = 2  # points in each direction of a cell
+CELL = 2e-4  # extent of the cells of the uniform grid, which begin at the origin (m)
+FRINGES = 7  # the scene's 'Fringe number'
+
+
+def read_at(directory, series, time):
+    """Time and data set of the picture that is nearest to a time."""
+    records = ElementTree.parse(directory / series).findall(".//DataSet")
+    record = min(records, key=lambda r: abs(float(r.get("timestep")) - time))
+    return float(record.get("timestep")), read(directory / record.get("file"))
 
 
 class Frame:
     """The fields of the deformable points at a time, by rows and columns of points."""
 
     def __init__(self, directory, time):
-        records = ElementTree.parse(directory / "particles.pvd").findall(".//DataSet")
-        record = min(records, key=lambda r: abs(float(r.get("timestep")) - time))
-        points = read(directory / record.get("file"))
-        self.time = float(record.get("timestep"))
+        self.time, points = read_at(directory, "particles.pvd", time)
         self.data = {}
         field = lambda name: vtk_to_numpy(points.GetPointData().GetArray(name))
         taken = field("body") >= 0
@@ -71,7 +88,126 @@ class Frame:
         return result
 
 
+class Field:
+    """s1 - s2 at the deformable points of a run, wherever they are."""
+
+    def __init__(self, directory, time):
+        self.time, points = read_at(directory, "particles.pvd", time)
+        field = lambda name: vtk_to_numpy(points.GetPointData().GetArray(name))
+        taken = field("body") >= 0
+        place = vtk_to_numpy(points.GetPoints().GetData())[taken, :2]
+        self.place = (place - field("displacement")[taken, :2]).astype(float)
+        self.value = field("principal_stress_difference")[taken].astype(float)
+
+    def at(self, places):
+        """Linear between the points, of the nearest one beyond them."""
+        # triangulations do not like numbers as small as millimetres in metres
+        net = Triangulation(*(self.place.T / CELL))
+        values = LinearTriInterpolator(net, self.value)(*(places.T / CELL))
+        values = numpy.ma.filled(values, numpy.nan)
+        for i in numpy.flatnonzero(~numpy.isfinite(values)):
+            distance = ((self.place - places[i]) ** 2).sum(axis=1)
+            values[i] = self.value[distance.argmin()]
+        return values
+
+    def cells(self):
+        """Of the uniform grid's cells that hold points: index, number, mean."""
+        index = numpy.floor(self.place / CELL).astype(int)
+        cells, inverse = numpy.unique(index, axis=0, return_inverse=True)
+        number = numpy.bincount(inverse.ravel())
+        return cells, number, numpy.bincount(inverse.ravel(), self.value) / number
+
+    def at_cells(self, cells):
+        values = self.at((cells + 0.5) * CELL)
+        where = {tuple(cell): i for i, cell in enumerate(cells)}
+        for cell, _, mean in zip(*self.cells()):
+            if tuple(cell) in where:
+                values[where[tuple(cell)]] = mean
+        return values
+
+
+def relative(difference, reference, weight=1.0):
+    """Root mean square of a difference over that of a reference."""
+    return (
+        numpy.sum(weight * difference**2) / numpy.sum(weight * reference**2)
+    ) ** 0.5
+
+
+def edges_of(directory, time):
+    """The edges of the cells of the grid."""
+    grid = read_at(directory, "grid.pvd", time)[1]
+    places = vtk_to_numpy(grid.GetPoints().GetData())[:, :2]
+    corners = [
+        [grid.GetCell(c).GetPointId(i) for i in range(4)]
+        for c in range(grid.GetNumberOfCells())
+        if grid.GetCell(c).GetNumberOfPoints() == 4
+    ]
+    return [places[ids + ids[:1]] for ids in corners]
+
+
+def differences(*arguments):
+    picture = arguments[-1] if arguments[-1].endswith(".png") else None
+    first, *others = map(Path, arguments[: len(arguments) - bool(picture)])
+    panels = []
+    print(
+        f"{'run':20} {'time':>6} {'points':>8} {'largest (MPa)':>14}"
+        f" {'points':>8} {'cells':>8} {'fringes':>8}"
+    )
+    for time in FRAMES:
+        uniform = Field(first, time * TRANSIT)
+        cells, number, mean = uniform.cells()
+        largest = uniform.value.max()
+        fringes = lambda values: numpy.cos(2 * numpy.pi * FRINGES * values / largest)
+        panels.append((first, time, cells, fringes(mean), 0 * mean))
+        for directory in others:
+            field = Field(directory, time * TRANSIT)
+            if abs(field.time / TRANSIT - time) > 0.05:
+                continue
+            other = field.at_cells(cells)
+            print(
+                f"{directory.name:20} {field.time / TRANSIT:6.3f} {len(field.value):8}"
+                f" {field.value.max() / 1e6:14.1f}"
+                f" {relative(field.at(uniform.place) - uniform.value, uniform.value):8.4f}"
+                f" {relative(other - mean, mean, number):8.4f}"
+                f" {relative(fringes(other) - fringes(mean), fringes(mean), number):8.4f}"
+            )
+            rms = numpy.mean(mean**2) ** 0.5
+            panels.append((directory, time, cells, fringes(other), (other - mean) / rms))
+    if not picture:
+        return
+    figure, axes = plt.subplots(
+        len(panels), figsize=(12, 3.1 * len(panels)), constrained_layout=True
+    )
+    for axis, (directory, time, cells, pattern, difference) in zip(axes, panels):
+        low = cells.min(axis=0)
+        shape = (cells.max(axis=0) - low + 1)[::-1]
+        extent = [
+            CELL * k
+            for k in (low[0], low[0] + shape[1], low[1], low[1] + shape[0])
+        ]
+        for half, values, style in (
+            ("upper", pattern, {"cmap": "gray", "vmin": -1, "vmax": 1}),
+            ("lower", difference, {"cmap": "RdBu", "vmin": -0.1, "vmax": 0.1}),
+        ):
+            image = numpy.full(shape, numpy.nan)
+            taken = (cells[:, 1] >= 0) == (half == "upper")
+            image[tuple((cells - low)[taken, ::-1].T)] = values[taken]
+            drawn = axis.imshow(
+                image, origin="lower", interpolation="nearest", extent=extent, **style
+            )
+        if directory != first:
+            figure.colorbar(drawn, ax=axis, label="difference / rms", shrink=0.8)
+            lines = [e for e in edges_of(directory, time * TRANSIT) if min(e[:, 1]) >= 0]
+            axis.add_collection(LineCollection(lines, colors="C1", linewidths=0.25))
+        axis.set(xlim=extent[:2], ylim=extent[2:], xticks=[], yticks=[])
+        axis.set_facecolor("lightsteelblue")
+        axis.set_title(f"{directory.name}, time {time}", fontsize=9)
+    figure.savefig(picture, dpi=100)
+
+
 def main(*arguments):
+    if arguments[0] == "--difference":
+        return differences(*arguments[1:])
     picture = arguments[-1] if arguments[-1].endswith(".png") else None
     directories = [Path(name) for name in arguments[: len(arguments) - bool(picture)]]
     strips = [(d, Frame(d, t * TRANSIT), t) for t in FRAMES for d in directories]

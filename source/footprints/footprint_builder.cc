@@ -119,19 +119,26 @@ namespace impm
 
   template <int dim>
   void
-  FootprintBuilder<dim>::sort(const unsigned int   n_places,
-                              MaterialPoints<dim> &points) const
+  FootprintBuilder<dim>::sort(MaterialPoints<dim>       &points,
+                              const BackgroundGrid<dim> &grid) const
   {
     // The field will be filled anew: until then it travels with the points.
-    const auto   end = points.layout.offset("unit_position");
-    unsigned int p   = 0;
+    const auto   end     = points.layout.offset("unit_position");
+    double       longest = 0;
+    unsigned int p       = 0;
     for (auto &particle : points.sorted.particles)
       {
         const auto goal = particle.get_location();
-        particle.set_location(
-          place_in(particle.get_surrounding_cell(), points.vector(p, end)));
+        const auto start =
+          place_in(particle.get_surrounding_cell(), points.vector(p, end));
+        for (unsigned int d = 0; d < dim; ++d)
+          longest = std::max(longest, std::abs(goal[d] - start[d]));
+        particle.set_location(start);
         points.set_vector(p++, end, goal);
       }
+    const unsigned int n_places =
+      1 + Utilities::MPI::max(longest, grid.communicator) /
+            (0.9 * grid.discretization()->smallest_cell_extent);
     for (unsigned int n = n_places; n > 0; --n)
       {
         p = 0;

@@ -9,6 +9,24 @@ namespace impm
 
   namespace
   {
+    /** Of the owned and ghost cells at every vertex. Collective. */
+    template <int dim>
+    std::vector<double>
+    largest_at_vertices(const BackgroundGrid<dim> &grid,
+                        std::vector<double>       &levels)
+    {
+      exchange_cell_data(*grid.discretization(), levels);
+      std::vector<double> at_vertices(grid.triangulation.n_vertices(), -1);
+      for (const auto &cell : grid.triangulation.active_cell_iterators())
+        if (!cell->is_artificial())
+          for (const auto v : cell->vertex_indices())
+            {
+              double &level = at_vertices[cell->vertex_index(v)];
+              level = std::max(level, levels[cell->active_cell_index()]);
+            }
+      return at_vertices;
+    }
+
     /** Gives every owned cell the largest level of those around it, so often.
      * Collective. */
     template <int dim>
@@ -17,26 +35,64 @@ namespace impm
                   const unsigned int         n_cells,
                   std::vector<double>       &levels)
     {
-      const auto discretization = grid.discretization();
-      const auto cells          = grid.triangulation.active_cell_iterators();
       for (unsigned int i = 0; i < n_cells; ++i)
         {
-          exchange_cell_data(*discretization, levels);
-          std::vector<double> at_vertices(grid.triangulation.n_vertices(), -1);
-          for (const auto &cell : cells)
-            if (!cell->is_artificial())
-              for (const auto v : cell->vertex_indices())
-                {
-                  double &level = at_vertices[cell->vertex_index(v)];
-                  level = std::max(level, levels[cell->active_cell_index()]);
-                }
-          for (const auto &cell : cells)
+          const auto at_vertices = largest_at_vertices(grid, levels);
+          for (const auto &cell : grid.triangulation.active_cell_iterators())
             if (cell->is_locally_owned())
               for (const auto v : cell->vertex_indices())
                 {
                   double &level = levels[cell->active_cell_index()];
                   level = std::max(level, at_vertices[cell->vertex_index(v)]);
                 }
+        }
+    }
+
+    /**
+     * Raises the next levels of owned cells until those that touch differ by
+     * one at most, whichever of them goes first, and siblings are coarsened
+     * together. deal.II would see to that, too, but what it takes back depends
+     * on the ranks, since it does not know what becomes of ghost cells, and
+     * points split in between. Collective.
+     */
+    template <int dim>
+    void
+    settle_levels(const BackgroundGrid<dim> &grid, std::vector<double> &levels)
+    {
+      const auto next = [&](const auto &cell) -> double & {
+        return levels[cell->active_cell_index()];
+      };
+      const auto may_be_coarsened = [&](const auto &cell) {
+        for (const auto &sibling : cell->parent()->child_iterators())
+          if (!sibling->is_active() || next(sibling) >= grid.level(sibling))
+            return false;
+        return true;
+      };
+      for (bool changed = true; changed;)
+        {
+          changed                = false;
+          auto levels_on_the_way = levels;
+          for (const auto &cell : grid.triangulation.active_cell_iterators())
+            if (cell->is_locally_owned())
+              {
+                double &level = levels_on_the_way[cell->active_cell_index()];
+                level         = std::max<double>(level, grid.level(cell));
+              }
+          const auto at_vertices = largest_at_vertices(grid, levels_on_the_way);
+          for (const auto &cell : grid.triangulation.active_cell_iterators())
+            if (cell->is_locally_owned())
+              {
+                double least = next(cell);
+                for (const auto v : cell->vertex_indices())
+                  least =
+                    std::max(least, at_vertices[cell->vertex_index(v)] - 1);
+                if (least < grid.level(cell) && !may_be_coarsened(cell))
+                  least = grid.level(cell);
+                changed    = changed || least > next(cell);
+                next(cell) = least;
+              }
+          changed =
+            Utilities::MPI::max<unsigned int>(changed, grid.communicator) > 0;
         }
     }
   } // namespace
@@ -59,21 +115,28 @@ namespace impm
     spread_levels(grid, spec.buffer, refine);
     auto keep = refine;
     spread_levels(grid, spec.hysteresis, keep);
+    std::vector<double> next(wanted.size());
     for (const auto &cell : grid.triangulation.active_cell_iterators())
       if (cell->is_locally_owned())
         {
-          const int level = grid.level(cell);
-          if (level < refine[cell->active_cell_index()])
-            cell->set_refine_flag();
-          else if (level > keep[cell->active_cell_index()])
-            cell->set_coarsen_flag();
+          const auto i     = cell->active_cell_index();
+          const int  level = grid.level(cell);
+          next[i]          = level < refine[i] ? level + 1 :
+                             level > keep[i]   ? level - 1 :
+                                                 level;
         }
-    // Takes back the flags of cells whose siblings stay.
-    grid.triangulation.prepare_coarsening_and_refinement();
+    settle_levels(grid, next);
     bool any = false;
     for (const auto &cell : grid.triangulation.active_cell_iterators())
-      any = any || (cell->is_locally_owned() &&
-                    (cell->refine_flag_set() || cell->coarsen_flag_set()));
+      if (cell->is_locally_owned())
+        {
+          const int change = next[cell->active_cell_index()] - grid.level(cell);
+          if (change > 0)
+            cell->set_refine_flag();
+          else if (change < 0)
+            cell->set_coarsen_flag();
+          any = any || change != 0;
+        }
     return Utilities::MPI::max<unsigned int>(any, grid.communicator) > 0;
   }
 

@@ -72,8 +72,9 @@ namespace impm
     for (const auto &name : Utilities::MPI::all_gather(grid.communicator, lost))
       if (!name.empty())
         named = name + " is one of them";
-    throw ComputationError(std::to_string(missing) +
-                           " points have left the domain: " + named);
+    throw ComputationError(
+      std::to_string(missing) +
+      " points have left the domain or were lost between ranks: " + named);
   }
 
   template <int dim>
@@ -81,7 +82,8 @@ namespace impm
                                       const PointLayout         &history,
                                       const Bodies<dim>         &bodies,
                                       const Tractions<dim>      &tractions,
-                                      const BackgroundGrid<dim> &grid)
+                                      const BackgroundGrid<dim> &grid,
+                                      const bool                 is_draft)
     : layout(layout)
     , sorted(grid, layout.size())
     , offset_deformation(layout.offset("deformation_gradient"))
@@ -128,12 +130,14 @@ namespace impm
           body.material->initialize_history(values + offset_history);
         };
         if (!body.rigid)
-          sorted.insert(seed_body(bodies, body, layout.geometry, grid), fill);
+          sorted.insert(
+            seed_body(bodies, body, layout.geometry, grid, is_draft), fill);
         materials.push_back(body.material);
         names.push_back(body.name);
       }
     sort();
-    count_points_under_tractions(tractions, *this);
+    if (!is_draft)
+      count_points_under_tractions(tractions, *this);
   }
 
   template <int dim>

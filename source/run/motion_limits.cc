@@ -112,9 +112,7 @@ namespace impm
     // Nor does a point feel material that it has not reached; and between ranks
     // it is found only where the neighbour can see it.
     if (motion.in_cells > 0.95 * largest_in_cells)
-      motion.forbidden = largest_in_cells == 1 ?
-                           "a point moves across a whole cell" :
-                           "a point moves across too many cells";
+      motion.forbidden = "a point moves across a whole cell";
     return motion;
   }
 

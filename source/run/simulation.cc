@@ -40,7 +40,8 @@ namespace impm
                                          *scene.history,
                                          scene.bodies,
                                          scene.loads.tractions,
-                                         grid);
+                                         grid,
+                                         true);
         const RigidBodies<dim>    rigid(scene.bodies, scene.geometry, grid);
         return policy.flag_cells(grid, points, rigid, now);
       };
@@ -104,21 +105,18 @@ namespace impm
       return;
     // Steps of an interval may have passed without a grid to adapt.
     const unsigned int interval = scene.adaptation.interval;
-    bool               goes_on =
-      total.step == 0 || total.step / interval != adapted_step / interval;
-    if (goes_on)
-      adapted_step = total.step;
-    for (unsigned int i = 0;
-         goes_on && i < policy->largest_number_of_rounds() &&
-         policy->flag_cells(grid, points, rigid, {time, total.step, i});
-         ++i)
+    if (total.step == 0 || total.step / interval != adapted_step / interval)
       {
-        const auto n = grid.triangulation.n_global_active_cells();
-        problem.reset();
-        adapt_grid(grid, points, rigid);
-        resample();
-        // The levels may have to stay as they are beside others.
-        goes_on = grid.triangulation.n_global_active_cells() != n;
+        adapted_step = total.step;
+        for (unsigned int i = 0;
+             i < policy->largest_number_of_rounds() &&
+             policy->flag_cells(grid, points, rigid, {time, total.step, i});
+             ++i)
+          {
+            problem.reset();
+            adapt_grid(grid, points, rigid);
+            resample();
+          }
       }
     report.imbalance = balance.imbalance();
     if (report.imbalance >
@@ -148,9 +146,10 @@ namespace impm
   {
     const auto  &spec = scene.grid;
     const double next = 1 + 1. / off_grid.n_steps; // goes as far as these did
-    if (next * off_grid.in_cells > 0.95 * spec.reset_motion ||
+    const double most = 0.95 * spec.reset_motion;
+    if (next * off_grid.in_cells > most ||
         rigid.largest_displacement(off_grid.start, time + report.dt) >
-          0.95 * grid.discretization()->smallest_cell_extent)
+          most * grid.discretization()->smallest_cell_extent)
       return true;
     if (spec.reset == GridReset::interval)
       return off_grid.n_steps >= spec.reset_interval;
@@ -164,8 +163,7 @@ namespace impm
   Simulation<dim>::reset_grid()
   {
     grid.reset();
-    // No further than a neighbouring cell, which may be half as large, at once.
-    builder.sort(1 + std::floor(off_grid.in_cells / 0.45), points);
+    builder.sort(points, grid);
     rigid.sort();
     resample();
     off_grid = OffGrid();
@@ -202,12 +200,16 @@ namespace impm
     console.detail("  residuals:" + iterations.str());
     if (!solution.converged)
       return solution.failure;
-    const auto motion = motion_through_grid(*problem,
-                                            result.increment,
-                                            grid,
-                                            points,
-                                            *policy,
-                                            scene.grid.reset_motion);
+    const auto motion =
+      motion_through_grid(*problem,
+                          result.increment,
+                          grid,
+                          points,
+                          *policy,
+                          // Of one step, as ever.
+                          is_off_grid() ?
+                            scene.grid.reset_motion :
+                            std::max(1., scene.grid.reset_motion));
     if (motion.forbidden.empty())
       off_grid.in_cells = motion.in_cells;
     return motion.forbidden;

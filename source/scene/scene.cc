@@ -4,6 +4,8 @@
 
 #include <boost/algorithm/cxx11/any_of.hpp>
 
+#include <algorithm>
+
 namespace impm
 {
   using boost::algorithm::any_of;
@@ -11,6 +13,31 @@ namespace impm
 
   namespace
   {
+    /** What does not go with a grid that keeps its motion. */
+    template <int dim>
+    void
+    check_reset(const Section &top, Scene<dim> &scene)
+    {
+      if (!scene.grid.keeps_motion() || scene.grid.is_lagrangian())
+        return;
+      if (scene.time.momentum_formulation)
+        top.subsection("Time").refuse(
+          "Formulation",
+          "allowed on a grid that keeps its motion ('Grid/Reset') is velocity");
+      if (scene.bodies.size() > 1 && scene.grid.reset_motion > 0.5)
+        top.subsection("Grid").refuse(
+          "Largest motion",
+          "allowed for several bodies, which must not pass into each other "
+          "unseen, is at most 0.5");
+      if (scene.time.has_inertia() &&
+          std::count_if(scene.bodies.begin(),
+                        scene.bodies.end(),
+                        [](const auto &body) { return !body.rigid; }) > 1)
+        scene.warnings.push_back(
+          "bodies that have met stay together until the grid is reset: compare "
+          "their impacts with 'Grid/Reset = every step'");
+    }
+
     /** Declares, or reads and checks. */
     template <int dim>
     Scene<dim>
@@ -32,10 +59,7 @@ namespace impm
       add_boundary_conditions(top, scene.faces, scene.grid, scene.warnings);
       add_loads(top, scene.loads, scene.bodies, lagrangian);
       add_time(top, scene.time, lagrangian, scene.warnings);
-      if (scene.time.momentum_formulation && scene.grid.keeps_motion())
-        top.subsection("Time").refuse(
-          "Formulation",
-          "allowed on a grid that keeps its motion ('Grid/Reset') is velocity");
+      check_reset(top, scene);
       add_solver(top, scene.solver, scene.time, scene.bodies);
       add_stabilization(top, scene.stabilization, scene.time, lagrangian);
       add_output(top, scene.output, scene.faces, scene.bodies);

@@ -181,7 +181,8 @@ namespace impm
   seed_body(const Bodies<dim>         &bodies,
             const BodySpec<dim>       &body,
             const GeometryKind         geometry,
-            const BackgroundGrid<dim> &grid)
+            const BackgroundGrid<dim> &grid,
+            const bool                 may_be_empty)
   {
     std::vector<Seed<dim>> seeds;
     if (body.shape)
@@ -191,7 +192,8 @@ namespace impm
 
     const std::string entry =
       "Bodies/" + body.name + (body.shape ? "/Shape" : "/File");
-    if (Utilities::MPI::sum(seeds.size(), grid.communicator) == 0)
+    if (!may_be_empty &&
+        Utilities::MPI::sum(seeds.size(), grid.communicator) == 0)
       throw InputError(entry,
                        "body '" + body.name +
                          "' has no points: it is empty, lies outside the grid "
@@ -217,10 +219,12 @@ namespace impm
   seed_body(const Bodies<2> &,
             const BodySpec<2> &,
             GeometryKind,
-            const BackgroundGrid<2> &);
+            const BackgroundGrid<2> &,
+            bool);
   template std::vector<Seed<3>>
   seed_body(const Bodies<3> &,
             const BodySpec<3> &,
             GeometryKind,
-            const BackgroundGrid<3> &);
+            const BackgroundGrid<3> &,
+            bool);
 } // namespace impm

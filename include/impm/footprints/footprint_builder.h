@@ -38,9 +38,9 @@ namespace impm
 
     /** Sorts points that have moved since then into their cells. Between
      * ranks, they are found only where the next one can see them: they go there
-     * over so many places on their way. Collective. */
+     * over places less than any cell apart. Collective. */
     void
-    sort(unsigned int n_places, MaterialPoints<dim> &points) const;
+    sort(MaterialPoints<dim> &points, const BackgroundGrid<dim> &grid) const;
 
     /** The footprints of this step. */
     Footprints<dim>

@@ -63,13 +63,15 @@ namespace impm
     /**
      * Fills the bodies with points that carry a layout, which ends with that
      * of the laws' history. Throws InputError where seed_body() or
-     * count_points_under_tractions() does. Collective.
+     * count_points_under_tractions() does; a draft, on a grid that will yet be
+     * adapted to it, may lack points. Collective.
      */
     MaterialPoints(const PointLayout         &layout,
                    const PointLayout         &history,
                    const Bodies<dim>         &bodies,
                    const Tractions<dim>      &tractions,
-                   const BackgroundGrid<dim> &grid);
+                   const BackgroundGrid<dim> &grid,
+                   bool                       is_draft = false);
 
     /** Sorts the points into cells and takes their addresses. Collective. */
     void

@@ -22,15 +22,17 @@ namespace impm
   /**
    * The points of a body in the cells of this rank: those of a regular
    * pattern in every cell that lie in its shape, or those of its file.
-   * Throws InputError, on every rank alike, when there are none or when one
-   * also lies in the shape of another body. Collective.
+   * Throws InputError, on every rank alike, when there are none, unless it
+   * `may_be_empty`, or when one also lies in the shape of another body.
+   * Collective.
    */
   template <int dim>
   std::vector<Seed<dim>>
   seed_body(const Bodies<dim>         &bodies,
             const BodySpec<dim>       &body,
             GeometryKind               geometry,
-            const BackgroundGrid<dim> &grid);
+            const BackgroundGrid<dim> &grid,
+            bool                       may_be_empty = false);
 } // namespace impm
 
 #endif

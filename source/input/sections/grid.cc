@@ -23,8 +23,9 @@ namespace impm
                   "When nodes go back to the grid, and points are sorted into "
                   "its cells. Until then points keep their places in their "
                   "cells, as in finite elements, and nodes their velocities; "
-                  "bodies do not meet, points do not split, the grid does not "
-                  "adapt.");
+                  "bodies neither meet nor part, points do not split, the "
+                  "grid does not adapt. With FLIP, velocities lose the more at "
+                  "a reset the rarer it is; with APIC they do not.");
       if (section.may_be(resets, GridReset::every_step) &&
           section.get("Reset") != "any")
         return;
@@ -42,11 +43,12 @@ namespace impm
                     "grid is reset after the step that exceeds it.");
       section.add("Largest motion",
                   grid.reset_motion,
-                  {"1", 0.1, 1000},
-                  "Of a point since the last reset, in cells: the grid is "
-                  "reset before the step that would exceed it. Rigid bodies "
-                  "move by no more than a cell. Above 1, what moves may pass "
-                  "into other material or through it before it feels it.");
+                  {"0.5", 0.1, 1000},
+                  "Of a point or a rigid body since the last reset, in cells: "
+                  "the grid is reset before the step that would exceed it. "
+                  "Above 0.5, what moves may pass into other parts of its body "
+                  "or through them before they feel each other, which is "
+                  "refused where there are several bodies.");
     }
 
     template <int dim>

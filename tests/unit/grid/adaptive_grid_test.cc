@@ -409,6 +409,34 @@ TEST(AdaptiveGridMpi, RanksShareTheWork)
 }
 
 
+// What no point of a coarse cell lies in is there once these are fine.
+TEST(AdaptiveGridMpi, SmallBodyIsFoundWhereTheGridIsFine)
+{
+  const Overrides small = {"Geometry/box/Lower corner=0.44, 0.44",
+                           "Geometry/box/Upper corner=0.49, 0.49"};
+  expect_blame(block_scene("plane strain"),
+               small,
+               "Bodies/block/Shape",
+               {"no points"});
+  expect_blame(block_scene("plane strain"),
+               small + criterion("expression", {"Expression=x > 0.6"}),
+               "Bodies/block/Shape",
+               {"no points"});
+  const auto scene =
+    scene_from<2>(block_scene("plane strain"),
+                  small +
+                    criterion("expression", {"Expression=if(x < 0.6, 3, 0)"}) +
+                    Overrides{"Grid/Adaptation/Highest level=3"});
+  const int id =
+    Utilities::MPI::broadcast(MPI_COMM_WORLD, static_cast<int>(getpid()));
+  const auto history =
+    run(scene,
+        MPI_COMM_WORLD,
+        testing::TempDir() + "impm_small_" + std::to_string(id));
+  EXPECT_NEAR(history.at("mass")[0], 0.05 * 0.05, 0.0012);
+}
+
+
 TEST(AdaptiveGrid, BadInputIsRefused)
 {
   const auto expect = [](const Overrides &overrides, const std::string &entry) {

@@ -206,6 +206,79 @@ TEST(GridResetMpi, ResetsByDistortion)
 }
 
 
+// Into cells an eighth as large, whatever the rank.
+TEST(GridResetMpi, FlightIntoFinerCells)
+{
+  const auto history = go<2>("plane strain",
+                             with_inertia + seldom +
+                               Overrides{"Grid/Steps between resets=100",
+                                         "Grid/Cells=16, 16",
+                                         "Grid/Local refinements=3",
+                                         "Grid/Refine where=x - 0.6",
+                                         "Geometry/box/Lower corner=0.1, 0.1",
+                                         "Geometry/box/Upper corner=0.3, 0.3",
+                                         "Bodies/block/Velocity=0.55; 0.5",
+                                         "Time/Time step=0.09",
+                                         "Time/End time=0.9"});
+  EXPECT_NEAR(history.at("kinetic_energy").back() /
+                history.at("kinetic_energy")[0],
+              1.,
+              1e-11);
+  const auto resets = go<2>("plane strain",
+                            with_inertia + seldom +
+                              Overrides{"Grid/Steps between resets=5",
+                                        "Grid/Cells=16, 16",
+                                        "Grid/Local refinements=3",
+                                        "Grid/Refine where=x - 0.6",
+                                        "Geometry/box/Lower corner=0.1, 0.1",
+                                        "Geometry/box/Upper corner=0.3, 0.3",
+                                        "Bodies/block/Velocity=0.55; 0.5",
+                                        "Time/Time step=0.09",
+                                        "Time/End time=0.9"});
+  EXPECT_NEAR(resets.at("kinetic_energy").back() /
+                resets.at("kinetic_energy")[0],
+              1.,
+              1e-11);
+}
+
+
+// Two bodies fly at each other, an empty cell between them: neither is in the
+// other when they meet.
+TEST(GridResetMpi, BodiesDoNotPassIntoEachOther)
+{
+  const Overrides two     = {"Grid/Cells=20, 20",
+                             "Geometry/Shapes=box, other",
+                             "Geometry/box/Lower corner=0.1, 0.4",
+                             "Geometry/box/Upper corner=0.3, 0.6",
+                             "Geometry/other/Lower corner=0.35, 0.4",
+                             "Geometry/other/Upper corner=0.55, 0.6",
+                             "Bodies/Names=block, second",
+                             "Bodies/second/Shape=other",
+                             "Bodies/second/Material=rubber",
+                             "Bodies/block/Velocity=0.03; 0",
+                             "Bodies/second/Velocity=-0.03; 0",
+                             "Time/Time step=0.02",
+                             "Output/Probes=one, two",
+                             "Output/one/Kind=mean",
+                             "Output/one/Field=displacement",
+                             "Output/one/Component=0",
+                             "Output/one/Bodies=block",
+                             "Output/two/Kind=mean",
+                             "Output/two/Field=displacement",
+                             "Output/two/Component=0",
+                             "Output/two/Bodies=second",
+                             "Grid/Reset=distortion"};
+  const auto      history = go<2>("plane strain", with_inertia + two);
+  for (unsigned int i = 0; i < history.at("one").size(); ++i)
+    // They are compressed a little, too.
+    EXPECT_LT(history.at("one")[i] - history.at("two")[i], 0.05 + 0.01);
+  expect_blame(block_scene("plane strain"),
+               two + Overrides{"Grid/Largest motion=1"},
+               "Grid/Largest motion",
+               {"0.5", "several bodies"});
+}
+
+
 TEST(GridReset, BadInputIsRefused)
 {
   expect_blame(block_scene("plane strain"),

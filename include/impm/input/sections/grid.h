@@ -46,7 +46,7 @@ namespace impm
     unsigned int reset_interval = 1; ///< in steps
     /** Largest logarithm of a principal stretch since the reset. */
     double reset_distortion = 0;
-    double reset_motion     = 1; ///< of a point, in cells
+    double reset_motion     = 0.5; ///< largest of a point, in cells
 
     /** Of the ranks, before cells are sent to others. */
     double largest_imbalance = 1.2;

@@ -209,7 +209,7 @@ namespace impm
       {
         const auto cell =
           discretization.with_dofs(particle.get_surrounding_cell());
-        // Not that of the particle, which changes when it is sent to a rank.
+        // What a particle has as its own is its handler's to change.
         const Point<dim> unit =
           keeps_motion ? Point<dim>(points.vector(p, offset_position)) :
                          particle.get_reference_location();

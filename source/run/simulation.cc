@@ -100,9 +100,11 @@ namespace impm
   Simulation<dim>::adapt()
   {
     TimerOutput::Scope scope(timer, "adapt grid and points");
-    report.imbalance = balance.imbalance();
     if (grid.is_moved())
-      return;
+      {
+        report.imbalance = balance.imbalance();
+        return;
+      }
     // Steps of an interval may have passed without a grid to adapt.
     const unsigned int interval = scene.adaptation.interval;
     if (total.step == 0 || total.step / interval != adapted_step / interval)

@@ -14,10 +14,7 @@ namespace impm
   Tensor<1, dim>
   PointShape<dim>::edge(const unsigned int axis) const
   {
-    Tensor<1, dim> result;
-    for (unsigned int d = 0; d < dim; ++d)
-      result[d] = deformation[d][axis] * domain[axis];
-    return result;
+    return domain_edge<dim>(deformation, domain[axis], axis);
   }
 
   template <int dim>

@@ -47,7 +47,7 @@ namespace impm
       };
       if (!scene.adaptation.criteria.empty())
         for (unsigned int i = 0; i < policy.largest_number_of_rounds() + 1 &&
-                                 wants_other_cells({0, 0, i});
+                                 wants_other_cells({0, i});
              ++i)
           grid.adapt();
       return MaterialPoints<dim>(choose_layout(scene),
@@ -112,7 +112,7 @@ namespace impm
         adapted_step = total.step;
         for (unsigned int i = 0;
              i < policy->largest_number_of_rounds() &&
-             policy->flag_cells(grid, points, rigid, {time, total.step, i});
+             policy->flag_cells(grid, points, rigid, {time, i});
              ++i)
           {
             problem.reset();

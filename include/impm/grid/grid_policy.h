@@ -10,8 +10,7 @@ namespace impm
   struct PolicyTime
   {
     double       time  = 0; ///< (s)
-    unsigned int step  = 0; ///< that begins, counted from 0
-    unsigned int round = 0; ///< of those before that step
+    unsigned int round = 0; ///< of those before a step
   };
 
   /**

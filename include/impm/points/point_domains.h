@@ -31,6 +31,19 @@ namespace impm
     return largest;
   }
 
+  /** What F makes of an edge of the initial box (m). */
+  template <int dim>
+  dealii::Tensor<1, dim>
+  domain_edge(const dealii::Tensor<2, 3> &F,
+              const double                length,
+              const unsigned int          axis)
+  {
+    dealii::Tensor<1, dim> edge;
+    for (unsigned int d = 0; d < dim; ++d)
+      edge[d] = F[d][axis] * length;
+    return edge;
+  }
+
   /** Fields of a point by what splitting and merging do to them. */
   template <int dim>
   class PointDomains
@@ -56,11 +69,9 @@ namespace impm
     dealii::Tensor<1, dim>
     edge(const double *fields, const unsigned int axis) const
     {
-      const auto             F = layout.load_tensor(fields + deformation);
-      dealii::Tensor<1, dim> edge;
-      for (unsigned int d = 0; d < dim; ++d)
-        edge[d] = F[d][axis] * fields[domain + axis];
-      return edge;
+      return domain_edge<dim>(layout.load_tensor(fields + deformation),
+                              fields[domain + axis],
+                              axis);
     }
 
     const PointLayout &layout;

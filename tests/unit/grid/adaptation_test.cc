@@ -68,7 +68,7 @@ namespace
   adapt(Model<dim> &model, SplitWhere<dim> &policy)
   {
     ASSERT_TRUE(policy.flag_cells(
-      model.grid, model.points, model.rigid, {model.time, 0, 0}));
+      model.grid, model.points, model.rigid, {model.time, 0}));
     const auto n         = model.points.sorted.n_global();
     const auto numbering = model.grid.discretization()->numbering;
     model.problem.reset();

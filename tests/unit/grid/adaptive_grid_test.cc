@@ -42,7 +42,7 @@ namespace
     for (unsigned int i = 0; i < 6; ++i)
       {
         if (!policy.flag_cells(
-              model.grid, model.points, model.rigid, {model.time, 0, i}))
+              model.grid, model.points, model.rigid, {model.time, i}))
           break;
         EXPECT_LT(i, 5u) << "the grid does not come to rest";
         adapt_grid(model.grid, model.points, model.rigid);
@@ -234,7 +234,7 @@ namespace
         changes.append(
           adapt_points(model.scene.bodies, model.grid, model.points));
         if (policy.flag_cells(
-              model.grid, model.points, model.rigid, {model.time, step, 0}))
+              model.grid, model.points, model.rigid, {model.time, 0}))
           {
             model.problem.reset();
             adapt_grid(model.grid, model.points, model.rigid);
@@ -293,7 +293,7 @@ TEST(AdaptiveGridMpi, PatchStaysUniform)
       for (unsigned int step = 0; step < 3; ++step)
         {
           if (policy.flag_cells(
-                model.grid, model.points, model.rigid, {model.time, step, 0}))
+                model.grid, model.points, model.rigid, {model.time, 0}))
             {
               model.problem.reset();
               adapt_grid(model.grid, model.points, model.rigid);

@@ -19,8 +19,9 @@ namespace impm
   --quiet | --verbose
   --version, --help
 Exit code: 0 done; 1 bad input; 2 the computation could not go on; 3 the
-system failed; 130, 143 stopped by SIGINT, SIGTERM, after the step and its
-checkpoint (a second signal stops at once). Parallel: mpirun -np N impm_dealii ...
+system failed; 130, 143, 138 stopped by SIGINT, SIGTERM, SIGUSR1, after the step
+and its checkpoint (a second signal stops at once). Parallel: mpirun -np N
+impm_dealii ..., to be stopped by SIGUSR1.
 )";
 
   CommandLine

@@ -1,7 +1,9 @@
+#include <impm/base/exceptions.h>
 #include <impm/grid/adaptive_grid.h>
 #include <impm/grid/populated_cells.h>
 
 #include <algorithm>
+#include <sstream>
 
 namespace impm
 {
@@ -9,7 +11,8 @@ namespace impm
 
   namespace
   {
-    /** Of the owned and ghost cells at every vertex. Collective. */
+    /** Of the owned and ghost cells at every vertex, -1 where there is none.
+     * Collective. */
     template <int dim>
     std::vector<double>
     largest_at_vertices(const BackgroundGrid<dim> &grid,
@@ -53,12 +56,22 @@ namespace impm
      * one at most, whichever of them goes first, and siblings are coarsened
      * together. deal.II would see to that, too, but what it takes back depends
      * on the ranks, since it does not know what becomes of ghost cells, and
-     * points split in between. Collective.
+     * points split in between.
+     *
+     * Cells without points become as fine as those with points that they
+     * touch, by one level at a time. A node of the material would hang
+     * on them otherwise, and so on nodes that have no mass but by it, or that
+     * belong to another body. Collective.
      */
     template <int dim>
     void
-    settle_levels(const BackgroundGrid<dim> &grid, std::vector<double> &levels)
+    settle_levels(const BackgroundGrid<dim> &grid,
+                  const MaterialPoints<dim> &points,
+                  std::vector<double>       &levels)
     {
+      const auto is_empty = [&](const auto &cell) {
+        return points.sorted.particles.n_particles_in_cell(cell) == 0;
+      };
       const auto next = [&](const auto &cell) -> double & {
         return levels[cell->active_cell_index()];
       };
@@ -80,12 +93,22 @@ namespace impm
               }
           const auto at_vertices = largest_at_vertices(grid, levels_on_the_way);
           for (const auto &cell : grid.triangulation.active_cell_iterators())
+            if (cell->is_locally_owned() && is_empty(cell))
+              levels_on_the_way[cell->active_cell_index()] = -1;
+          const auto at_material = largest_at_vertices(grid, levels_on_the_way);
+          for (const auto &cell : grid.triangulation.active_cell_iterators())
             if (cell->is_locally_owned())
               {
                 double least = next(cell);
                 for (const auto v : cell->vertex_indices())
-                  least =
-                    std::max(least, at_vertices[cell->vertex_index(v)] - 1);
+                  {
+                    const auto vertex = cell->vertex_index(v);
+                    least = std::max(least, at_vertices[vertex] - 1);
+                    if (is_empty(cell))
+                      least = std::max(least,
+                                       std::min(at_material[vertex],
+                                                grid.level(cell) + 1.));
+                  }
                 if (least < grid.level(cell) && !may_be_coarsened(cell))
                   least = grid.level(cell);
                 changed    = changed || least > next(cell);
@@ -125,19 +148,48 @@ namespace impm
                              level > keep[i]   ? level - 1 :
                                                  level;
         }
-    settle_levels(grid, next);
-    bool any = false;
+    settle_levels(grid, points, next);
+    const auto change = [&](const auto &cell) {
+      return next[cell->active_cell_index()] - grid.level(cell);
+    };
+    std::vector<double> n_changes = {0, 0}; // cells to refine, to coarsen
     for (const auto &cell : grid.triangulation.active_cell_iterators())
       if (cell->is_locally_owned())
         {
-          const int change = next[cell->active_cell_index()] - grid.level(cell);
-          if (change > 0)
-            cell->set_refine_flag();
-          else if (change < 0)
-            cell->set_coarsen_flag();
-          any = any || change != 0;
+          n_changes[0] += change(cell) > 0;
+          n_changes[1] += change(cell) < 0;
         }
-    return Utilities::MPI::max<unsigned int>(any, grid.communicator) > 0;
+    Utilities::MPI::sum(n_changes, grid.communicator, n_changes);
+    const double children = 1u << dim;
+    check_number_of_cells(grid.triangulation.n_global_active_cells() +
+                            (children - 1) *
+                              (n_changes[0] - n_changes[1] / children),
+                          now.time);
+    for (const auto &cell : grid.triangulation.active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          if (change(cell) > 0)
+            cell->set_refine_flag();
+          else if (change(cell) < 0)
+            cell->set_coarsen_flag();
+        }
+    return n_changes[0] + n_changes[1] > 0;
+  }
+
+  template <int dim>
+  void
+  AdaptiveGrid<dim>::check_number_of_cells(const double n_cells,
+                                           const double time) const
+  {
+    if (n_cells <= spec.most_cells)
+      return;
+    std::ostringstream text;
+    text << "the criteria of 'Grid/Adaptation' want " << n_cells
+         << " cells or more, allowed are " << spec.most_cells
+         << " ('Largest number of cells')";
+    if (time == 0)
+      throw InputError("Grid/Adaptation/Highest level", text.str());
+    throw ComputationError(text.str());
   }
 
   template class AdaptiveGrid<2>;

@@ -20,7 +20,7 @@ namespace impm
   catch_signals()
   {
     caught = 0;
-    for (const int signal : {SIGINT, SIGTERM})
+    for (const int signal : {SIGINT, SIGTERM, SIGUSR1})
       std::signal(signal, remember);
   }
 

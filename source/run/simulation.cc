@@ -8,6 +8,7 @@
 #include <impm/run/signals.h>
 #include <impm/run/simulation.h>
 #include <impm/scene/scene.h>
+#include <impm/scene/thin_parts.h>
 
 #include <algorithm>
 #include <cmath>
@@ -236,6 +237,11 @@ namespace impm
           {
             console.detail("  grid reset at t = " + std::to_string(time) +
                            ": " + failure);
+            warn("grid reset",
+                 "the grid was reset before it was due, since a step failed on "
+                 "the one that has moved: it is distorted too much for a "
+                 "'Largest motion' of " +
+                   Utilities::to_string(scene.grid.reset_motion) + " cells");
             reset_grid();
             builder.remember(points);
             continue;
@@ -394,6 +400,8 @@ namespace impm
     else
       {
         warn_of_instability();
+        for (const auto &sentence : find_thin_parts(scene.bodies, grid, points))
+          warn(sentence, sentence);
         if (scene.output.pictures)
           picture(false);
       }

@@ -1,7 +1,7 @@
 #!/bin/bash
-# What a run survives: survival.sh PROGRAM SCENES OUTPUT WHAT.
+# What a run survives: survival.sh PROGRAM SCENES OUTPUT WHAT [MPIRUN].
 set -um # else what is in the background ignores SIGINT
-program=$1 scenes=$2 output=$3 what=$4
+program=$1 scenes=$2 output=$3 what=$4 mpirun=$5
 
 # The upsetting on a coarse grid, a checkpoint at every step, pictures at every
 # tenth.
@@ -68,6 +68,16 @@ expect_same_as_whole()
   check_pictures "$output/run"
 }
 
+wait_for_checkpoint()
+{
+  local i
+  for ((i = 0; i < 200; ++i)); do
+    [ ! -e "$output/run/checkpoint/last_good" ] || return
+    sleep 0.05
+  done
+  fail "no checkpoint"
+}
+
 make_whole()
 {
   run 0 --output "$output/whole"
@@ -98,14 +108,11 @@ case $what in
     ;;
   signal)
     make_whole
-    for signal in INT:130 TERM:143; do
+    for signal in INT:130 TERM:143 USR1:138; do
       rm -rf "$output/run"
       "$program" "${scene[@]}" > "$output/said" 2>&1 &
       pid=$!
-      for ((i = 0; i < 200; ++i)); do
-        [ ! -e "$output/run/checkpoint/last_good" ] || break
-        sleep 0.05
-      done
+      wait_for_checkpoint
       kill "-${signal%:*}" "$pid"
       wait "$pid"
       code=$?
@@ -117,6 +124,27 @@ case $what in
       run 0 --restart
       expect_same_as_whole
     done
+    ;;
+  ranks) # a signal to mpirun, and one of its processes killed
+    ranks=("$mpirun" -np 2 "$program" "${scene[@]}")
+    "${ranks[@]}" --output "$output/whole" > "$output/said" 2>&1 ||
+      fail "does not run"
+    "${ranks[@]}" > "$output/said" 2>&1 &
+    pid=$!
+    wait_for_checkpoint
+    kill -USR1 "$pid"
+    wait "$pid" # with what mpirun makes of two codes
+    grep -q "stopped by signal .* step [0-9]+.*--restart goes on" -E \
+      "$output/said" || fail "does not stop"
+    check_pictures "$output/run"
+    "${ranks[@]}" --restart > "$output/said" 2>&1 &
+    pid=$!
+    sleep 0.5
+    pkill -KILL -n -f "$output/run --set" || fail "nobody to kill"
+    wait "$pid" && fail "goes on without a process"
+    check_pictures "$output/run"
+    "${ranks[@]}" --restart > "$output/said" 2>&1 || fail "does not restart"
+    expect_same_as_whole
     ;;
   damaged)
     make_whole

@@ -10,7 +10,8 @@ namespace impm
    * Refines and coarsens the grid by criteria. Every cell has the largest level
    * that any of them wants for it or, through the buffer, for a cell nearby.
    * What is finer than that is coarsened where the cells within the hysteresis
-   * agree. It remembers nothing: the same points on the same grid give the same
+   * agree. Around material, cells without any are as fine as it is. It
+   * remembers nothing: the same points on the same grid give the same
    * cells, on any number of ranks.
    */
   template <int dim>
@@ -35,6 +36,11 @@ namespace impm
     }
 
   private:
+    /** Throws InputError at the start, ComputationError later, where there are
+     * too many. */
+    void
+    check_number_of_cells(double n_cells, double time) const;
+
     const AdaptationSpec<dim> &spec;
   };
 } // namespace impm

@@ -4,8 +4,10 @@
 namespace impm
 {
   /**
-   * From now on SIGINT and SIGTERM, the next time, do no more than be there
-   * for caught_signal(); the second time they end the program.
+   * From now on SIGINT, SIGTERM and SIGUSR1, the next time, do no more than be
+   * there for caught_signal(); the second time they end the program. The last
+   * is for mpirun, which hands it on and waits, where after the others it soon
+   * kills.
    */
   void
   catch_signals();

@@ -143,6 +143,11 @@ namespace impm
                 adaptation.hysteresis,
                 {"1", 0, 10},
                 "Number of cells beyond the buffer that are not coarsened.");
+    section.add("Largest number of cells",
+                adaptation.most_cells,
+                {"5000000", 1},
+                "A run that would make more ends: a cell takes about one "
+                "kilobyte, empty or not.");
     for (const auto &name : names)
       add_criterion(section.subsection(name),
                     adaptation.criteria.emplace_back(),

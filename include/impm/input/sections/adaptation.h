@@ -48,6 +48,7 @@ namespace impm
     unsigned int                    lowest = 0, highest = 0;
     unsigned int                    interval = 1;               ///< in steps
     unsigned int                    buffer = 0, hysteresis = 0; ///< in cells
+    double                          most_cells = 0;
   };
 
   template <int dim>

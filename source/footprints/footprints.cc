@@ -193,6 +193,39 @@ namespace impm
   }
 
   template <int dim>
+  unsigned int
+  Footprints<dim>::nearest_node(const unsigned int p) const
+  {
+    unsigned int node    = numbers::invalid_unsigned_int;
+    double       largest = 0;
+    for (unsigned int k = first[p]; k < first[p + 1]; ++k)
+      for (unsigned int v = 0; v < n_nodes; ++v)
+        {
+          const unsigned int here  = cells[cell_of_entry[entries[k]]].nodes[v];
+          double             share = 0;
+          for (unsigned int l = first[p]; l < first[p + 1]; ++l)
+            {
+              const auto &nodes = cells[cell_of_entry[entries[l]]].nodes;
+              for (unsigned int w = 0; w < n_nodes; ++w)
+                if (nodes[w] == here)
+                  share += value(entries[l])[w];
+            }
+          if (share > largest * (1 + 1e-12))
+            {
+              largest = share;
+              node    = here;
+            }
+        }
+    for (unsigned int k = first[p]; k < first[p + 1]; ++k)
+      {
+        const auto &nodes = cells[cell_of_entry[entries[k]]].nodes;
+        if (std::find(nodes.begin(), nodes.end(), node) == nodes.end())
+          return numbers::invalid_unsigned_int;
+      }
+    return node;
+  }
+
+  template <int dim>
   void
   Footprints<dim>::make_patches(const std::vector<unsigned int> &coupled)
   {
@@ -201,15 +234,27 @@ namespace impm
     std::iota(patch_points.begin(), patch_points.end(), 0);
     place.resize(point.size() * n_nodes);
 
+    // A box without a group goes to the node next to its middle, where it
+    // touches cells around this one only: the points around a node make one
+    // block.
+    std::vector<unsigned int> nearest(n_points, numbers::invalid_unsigned_int);
+    if (point.size() != n_points)
+      for (unsigned int p = 0; p < n_points; ++p)
+        nearest[p] = nearest_node(p);
+
     // Zero if nothing couples a point: the invalid number overflows.
     const auto group = [&](const unsigned int p) {
       return coupled.empty() ? 0 : coupled[p] + 1;
     };
-    // Less than, and equal, by group, and by the cells of points without one.
+    // Less than, and equal, by group, else by node, else by cells.
     const auto compare = [&](const unsigned int p, const unsigned int q) {
       if (group(p) != group(q))
         return group(p) < group(q) ? -1 : 1;
       if (group(p) > 0)
+        return 0;
+      if (nearest[p] != nearest[q])
+        return nearest[p] < nearest[q] ? -1 : 1;
+      if (nearest[p] != numbers::invalid_unsigned_int)
         return 0;
       for (unsigned int i = first[p], j = first[q];; ++i, ++j)
         {

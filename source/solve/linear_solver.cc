@@ -61,17 +61,18 @@ namespace impm
   LinearSolver::take_tangent()
   {
     ++system.counts->tangents;
-    preconditioner = inverse = {};
+    inverse = {};
     if (needs_matrix)
       assemble();
     if (spec.linear_solver == LinearSolverKind::direct)
       return;
     if (spec.preconditioner == PreconditionerKind::amg)
       {
-        TimerOutput::Scope scope(timer, "preconditioner");
-        preconditioner = make_amg(*matrix, system.near_null_space());
+        if (!preconditioner.vmult || amg_is_worn)
+          set_up_amg();
         return;
       }
+    preconditioner = {};
     // Unknowns that are momenta are near enough to the right-hand side: an
     // increment of a node with little mass says little.
     if (spec.preconditioner == PreconditionerKind::jacobi)
@@ -89,9 +90,46 @@ namespace impm
     };
   }
 
+  void
+  LinearSolver::set_up_amg()
+  {
+    TimerOutput::Scope scope(timer, "preconditioner");
+    ++system.counts->hierarchies;
+    preconditioner =
+      make_amg(*matrix, system.near_null_space(), system.n_components());
+    iterations_when_new.reset();
+    amg_is_worn = false;
+  }
+
+  unsigned int
+  LinearSolver::iterate_or_renew(Vector &x, const Vector &b)
+  {
+    if (spec.preconditioner != PreconditionerKind::amg)
+      return iterate(x, b);
+    // One of an earlier tangent does for this one, too, until it costs about
+    // as many iterations as a new one costs time, or lets them fail.
+    constexpr unsigned int worth_a_new_one = 10;
+    if (iterations_when_new)
+      try
+        {
+          const unsigned int n = iterate(x, b);
+          amg_is_worn          = n > *iterations_when_new + worth_a_new_one;
+          return n;
+        }
+      catch (const ExceptionBase &)
+        {
+          x = 0;
+          set_up_amg();
+        }
+    const unsigned int n = iterate(x, b);
+    iterations_when_new  = n;
+    return n;
+  }
+
   unsigned int
   LinearSolver::iterate(Vector &x, const Vector &b)
   {
+    TimerOutput::Scope     scope(timer, "iterative solver");
     const double           goal = spec.linear_tolerance * b.l2_norm();
     SolverControl          strict(spec.linear_iterations, goal);
     IterationNumberControl lenient(spec.linear_iterations, goal);
@@ -134,8 +172,7 @@ namespace impm
     if (!is_direct)
       try
         {
-          TimerOutput::Scope scope(timer, "iterative solver");
-          return iterate(x, b);
+          return iterate_or_renew(x, b);
         }
       catch (const ExceptionBase &)
         {

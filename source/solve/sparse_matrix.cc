@@ -134,7 +134,8 @@ namespace impm
 
   LinearMap
   make_amg(const SparseMatrix                     &matrix,
-           const std::vector<std::vector<double>> &modes)
+           const std::vector<std::vector<double>> &modes,
+           const unsigned int                      n_components)
   {
     const auto amg = std::make_shared<Amg>();
     for (const auto &mode : modes)
@@ -143,10 +144,15 @@ namespace impm
 
     Teuchos::ParameterList                            parameters;
     TrilinosWrappers::PreconditionAMG::AdditionalData data;
-    data.aggregation_threshold = 0.02;
+    // By nodes; a larger one costs iterations on even grids, a smaller one on
+    // those that are stretched or adapted.
+    data.aggregation_threshold = 0.01;
     std::unique_ptr<Epetra_MultiVector> unused;
     const auto &trilinos_matrix = matrix.trilinos->matrix;
     data.set_parameters(parameters, unused, trilinos_matrix);
+    parameters.set("PDE equations", static_cast<int>(n_components));
+    // To factorize more is dear in space, not in the plane.
+    parameters.set("coarse: max size", n_components == 3 ? 500 : 2000);
     parameters.set("null space: type", "pre-computed");
     parameters.set("null space: dimension", static_cast<int>(modes.size()));
     parameters.set("null space: vectors", amg->modes.data());

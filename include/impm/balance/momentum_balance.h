@@ -109,6 +109,12 @@ namespace impm
     std::vector<std::vector<double>>
     near_null_space() const override;
 
+    unsigned int
+    n_components() const override
+    {
+      return dim;
+    }
+
     void
     initialize(Vector &vector) const override
     {

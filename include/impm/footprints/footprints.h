@@ -165,6 +165,11 @@ namespace impm
     Tensors
     deformations(const Vector &u) const;
 
+    /** The node that a point gives most to, if all cells that the point touches
+     * have it; else the invalid number. */
+    unsigned int
+    nearest_node(unsigned int point) const;
+
     std::vector<double>       values, gradients;
     bool                      moved = false;
     Tensors                   moved_by; ///< A, if nodes have moved

@@ -6,6 +6,8 @@
 #include <impm/input/sections/solver.h>
 #include <impm/solve/difference_quotient.h>
 
+#include <optional>
+
 namespace impm
 {
   /**
@@ -31,7 +33,8 @@ namespace impm
 
     /**
      * Takes the tangent as it is now: assembles it, makes the preconditioner,
-     * as far as they are wanted.
+     * as far as they are wanted. AMG hierarchies are kept while they are good
+     * enough.
      */
     void
     take_tangent();
@@ -48,8 +51,16 @@ namespace impm
     void
     assemble();
 
+    void
+    set_up_amg();
+
     unsigned int
     iterate(Vector &x, const Vector &b);
+
+    /** The same, with another hierarchy where the one of an earlier tangent
+     * fails. */
+    unsigned int
+    iterate_or_renew(Vector &x, const Vector &b);
 
     const SolverSpec    &spec;
     NonlinearSystem     &system;
@@ -60,6 +71,9 @@ namespace impm
     std::unique_ptr<SparseMatrix> matrix;
     Vector                        inverse_diagonal;
     LinearMap                     preconditioner; ///< if there is one
+    /** Of the first solve with an AMG hierarchy. */
+    std::optional<unsigned int> iterations_when_new;
+    bool                        amg_is_worn = false;
     LinearMap inverse; ///< of the matrix as it is, once factorized
   };
 } // namespace impm

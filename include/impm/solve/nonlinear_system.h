@@ -11,6 +11,7 @@ namespace impm
     unsigned long stress_evaluations    = 0; ///< of a point, on this rank
     unsigned long operator_applications = 0; ///< of a tangent
     unsigned int  tangents              = 0; ///< that were taken
+    unsigned int  hierarchies           = 0; ///< of AMG that were made
     unsigned int  solver_fallbacks      = 0; ///< to the direct solver
   };
 
@@ -96,6 +97,10 @@ namespace impm
     /** Directions that cost hardly any energy, by locally owned value. */
     virtual std::vector<std::vector<double>>
     near_null_space() const = 0;
+
+    /** Of a node: its values follow each other. */
+    virtual unsigned int
+    n_components() const = 0;
 
     /** A vector of unknowns, zero. */
     virtual void

@@ -82,14 +82,17 @@ namespace impm
   };
 
   /**
-   * Smoothed aggregation (ML) for elastic bodies, for a matrix that stays as it
-   * is; `modes` are what costs hardly any energy, by locally owned value.
-   * Throws LinearizationError, on every rank alike, when the matrix is
-   * singular. Collective.
+   * Smoothed aggregation (ML) of nodes with so many values each for elastic
+   * bodies; `modes` are what costs hardly any energy, by locally owned value.
+   * The matrix has to stay where it is. When it gets other entries, those are
+   * smoothed with, while the coarser levels stay as they were. Throws
+   * LinearizationError, on every rank alike, when the matrix is singular.
+   * Collective.
    */
   LinearMap
   make_amg(const SparseMatrix                     &matrix,
-           const std::vector<std::vector<double>> &modes);
+           const std::vector<std::vector<double>> &modes,
+           unsigned int                            n_components);
 
   /**
    * The inverse of a matrix that stays as it is, by factorization (Amesos,

@@ -1,5 +1,7 @@
 #include <impm/balance/terms/internal_forces.h>
 
+#include <algorithm>
+
 namespace impm
 {
   using namespace dealii;
@@ -92,11 +94,14 @@ namespace impm
     constexpr unsigned int n_nodes = Footprints<dim>::n_nodes;
     std::fill(slopes.begin(), slopes.end(), 0.);
     std::fill(shares.begin(), shares.end(), 0.);
+    touched.clear();
     for (unsigned int k = prints.first[point]; k < prints.first[point + 1]; ++k)
       for (unsigned int v = 0; v < n_nodes; ++v)
         {
           const unsigned int e = prints.entries[k];
           const unsigned int m = prints.place[e * n_nodes + v];
+          if (std::find(touched.begin(), touched.end(), m) == touched.end())
+            touched.push_back(m);
           shares[m] += prints.value(e)[v];
           for (unsigned int d = 0; d < dim; ++d)
             slopes[dim * m + d] += prints.gradient(e)[dim * v + d];
@@ -104,57 +109,44 @@ namespace impm
   }
 
   template <int dim>
-  template <typename Size>
+  template <typename Size, typename Places>
   void
-  InternalForces<dim>::add_points(const Patch        &patch,
-                                  const Size          n_patch_nodes,
-                                  FullMatrix<double> &matrix) const
+  InternalForces<dim>::add_point(const unsigned int  point,
+                                 const Size          n_point_nodes,
+                                 const Places       &places,
+                                 const double       *slope,
+                                 const double       *share,
+                                 FullMatrix<double> &matrix) const
   {
-    constexpr unsigned int n_nodes = Footprints<dim>::n_nodes;
-    for (unsigned int i = patch.begin_points; i < patch.end_points; ++i)
-      {
-        const unsigned int p     = prints.patch_points[i];
-        const unsigned int begin = prints.first[p], end = prints.first[p + 1];
-        const double      *A     = response.tangent(p);
-        const double      *slope = slopes.data();
-        const double      *share = shares.data();
-        const double       inverse_radius =
-          axisymmetric ? prints.inverse_radius[p] : 0.;
-        if (end == begin + 1 && n_patch_nodes == n_nodes)
-          {
-            slope = prints.gradient(prints.entries[begin]);
-            share = prints.value(prints.entries[begin]);
-          }
-        else
-          place_on_patch(p);
-        // rows of A B: one per value of a gradient, one column per unknown
-        for (unsigned int m = 0; m < n_patch_nodes; ++m)
-          for (unsigned int c = 0; c < dim; ++c)
+    const double *A = response.tangent(point);
+    const double  inverse_radius =
+      axisymmetric ? prints.inverse_radius[point] : 0.;
+    // rows of A B: one per value of a gradient, one column per unknown
+    for (unsigned int m = 0; m < n_point_nodes; ++m)
+      for (unsigned int c = 0; c < dim; ++c)
+        {
+          typename Kinematics<dim>::List AB;
+          for (unsigned int a = 0; a < n_gradients; ++a)
             {
-              typename Kinematics<dim>::List AB;
-              for (unsigned int a = 0; a < n_gradients; ++a)
-                {
-                  double sum = 0;
-                  for (unsigned int d = 0; d < dim; ++d)
-                    sum +=
-                      A[a * n_gradients + dim * c + d] * slope[dim * m + d];
-                  if (axisymmetric && c == 0)
-                    sum += A[a * n_gradients + dim * dim] * share[m] *
-                           inverse_radius;
-                  AB[a] = sum;
-                }
-              for (unsigned int l = 0; l < n_patch_nodes; ++l)
-                for (unsigned int b = 0; b < dim; ++b)
-                  {
-                    double sum = 0;
-                    for (unsigned int d = 0; d < dim; ++d)
-                      sum += slope[dim * l + d] * AB[dim * b + d];
-                    if (axisymmetric && b == 0)
-                      sum += share[l] * inverse_radius * AB[dim * dim];
-                    matrix(dim * l + b, dim * m + c) += sum;
-                  }
+              double sum = 0;
+              for (unsigned int d = 0; d < dim; ++d)
+                sum += A[a * n_gradients + dim * c + d] * slope[dim * m + d];
+              if (axisymmetric && c == 0)
+                sum +=
+                  A[a * n_gradients + dim * dim] * share[m] * inverse_radius;
+              AB[a] = sum;
             }
-      }
+          for (unsigned int l = 0; l < n_point_nodes; ++l)
+            for (unsigned int b = 0; b < dim; ++b)
+              {
+                double sum = 0;
+                for (unsigned int d = 0; d < dim; ++d)
+                  sum += slope[dim * l + d] * AB[dim * b + d];
+                if (axisymmetric && b == 0)
+                  sum += share[l] * inverse_radius * AB[dim * dim];
+                matrix(dim * places[l] + b, dim * places[m] + c) += sum;
+              }
+        }
   }
 
   template <int dim>
@@ -209,12 +201,38 @@ namespace impm
     shares.resize(n);
     // The most frequent number of nodes deserves loops that unroll.
     constexpr unsigned int n_nodes = Footprints<dim>::n_nodes;
-    if (n == n_nodes)
-      add_points(patch,
-                 std::integral_constant<unsigned int, n_nodes>(),
-                 matrix);
-    else
-      add_points(patch, n, matrix);
+    const std::integral_constant<unsigned int, n_nodes> n_of_a_cell;
+    for (unsigned int i = patch.begin_points; i < patch.end_points; ++i)
+      {
+        const unsigned int p     = prints.patch_points[i];
+        const unsigned int begin = prints.first[p];
+        if (prints.first[p + 1] == begin + 1)
+          {
+            const unsigned int e = prints.entries[begin];
+            add_point(p,
+                      n_of_a_cell,
+                      &prints.place[e * n_nodes],
+                      prints.gradient(e),
+                      prints.value(e),
+                      matrix);
+            continue;
+          }
+        place_on_patch(p);
+        point_slopes.clear();
+        point_shares.clear();
+        for (const unsigned int m : touched)
+          {
+            point_shares.push_back(shares[m]);
+            for (unsigned int d = 0; d < dim; ++d)
+              point_slopes.push_back(slopes[dim * m + d]);
+          }
+        add_point(p,
+                  static_cast<unsigned int>(touched.size()),
+                  touched.data(),
+                  point_slopes.data(),
+                  point_shares.data(),
+                  matrix);
+      }
     add_coupling(patch, matrix);
   }
 

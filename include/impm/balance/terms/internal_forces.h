@@ -85,15 +85,21 @@ namespace impm
     void
     patch_matrix(const Patch &patch, dealii::FullMatrix<double> &matrix) const;
 
-    /** Fills `slopes` and `shares` for a point on all nodes of its patch. */
+    /** Fills `slopes` and `shares` for a point on all nodes of its patch, and
+     * `touched` with the nodes among them that it has to do with. */
     void
     place_on_patch(unsigned int point) const;
 
-    template <typename Size>
+    /** What a point adds to the matrix of its patch, at the places in it that
+     * its nodes have, with their slopes and shares. */
+    template <typename Size, typename Places>
     void
-    add_points(const Patch                &patch,
-               Size                        n_patch_nodes,
-               dealii::FullMatrix<double> &matrix) const;
+    add_point(unsigned int                point,
+              Size                        n_point_nodes,
+              const Places               &places,
+              const double               *slope,
+              const double               *share,
+              dealii::FullMatrix<double> &matrix) const;
 
     void
     add_coupling(const Patch &patch, dealii::FullMatrix<double> &matrix) const;
@@ -105,7 +111,8 @@ namespace impm
     const double           extent;
 
     mutable std::vector<double> gradient_changes, stress_changes;
-    mutable std::vector<double> slopes, shares;
+    mutable std::vector<double> slopes, shares, point_slopes, point_shares;
+    mutable std::vector<unsigned int> touched;
   };
 } // namespace impm
 

@@ -68,7 +68,8 @@ namespace impm
       return;
     if (spec.preconditioner == PreconditionerKind::amg)
       {
-        if (!preconditioner.vmult || amg_is_worn)
+        if (!preconditioner.vmult || amg_is_worn ||
+            place_of_amg != matrix->place_of_entries())
           set_up_amg();
         return;
       }
@@ -98,7 +99,8 @@ namespace impm
     preconditioner =
       make_amg(*matrix, system.near_null_space(), system.n_components());
     iterations_when_new.reset();
-    amg_is_worn = false;
+    amg_is_worn  = false;
+    place_of_amg = matrix->place_of_entries();
   }
 
   unsigned int

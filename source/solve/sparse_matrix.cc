@@ -106,6 +106,7 @@ namespace impm
     for (const auto dof : D.locally_owned_elements())
       scaling[dof] = D[dof];
     scaling.compress(VectorOperation::insert);
+    ++n_places;
     A.trilinos->matrix.mmult(trilinos->matrix, B.trilinos->matrix, scaling);
   }
 

@@ -74,7 +74,8 @@ namespace impm
     /** Of the first solve with an AMG hierarchy. */
     std::optional<unsigned int> iterations_when_new;
     bool                        amg_is_worn = false;
-    LinearMap inverse; ///< of the matrix as it is, once factorized
+    unsigned int place_of_amg = 0; ///< of the matrix that it knows
+    LinearMap    inverse;          ///< of the matrix as it is, once factorized
   };
 } // namespace impm
 

@@ -64,6 +64,14 @@ namespace impm
     void
     vmult(Vector &dst, const Vector &src) const;
 
+    /** Changes when the entries get another place in memory: what knows the
+     * old one must go. */
+    unsigned int
+    place_of_entries() const
+    {
+      return n_places;
+    }
+
     /** Becomes A D B, with a diagonal matrix D. Collective. */
     void
     multiply(const SparseMatrix &A, const Vector &D, const SparseMatrix &B);
@@ -73,6 +81,7 @@ namespace impm
 
   private:
     const dealii::AffineConstraints<double> &constraints;
+    unsigned int                             n_places = 0;
   };
 
   /** What deal.II's solvers know of a matrix, a preconditioner, an inverse. */

@@ -146,8 +146,8 @@ namespace impm
     section.add("Largest number of cells",
                 adaptation.most_cells,
                 {"5000000", 1},
-                "A run that would make more ends: a cell takes about one "
-                "kilobyte, empty or not.");
+                "A run that would make more ends: a cell in the plane takes "
+                "about two kilobytes, empty or not.");
     for (const auto &name : names)
       add_criterion(section.subsection(name),
                     adaptation.criteria.emplace_back(),

@@ -68,8 +68,9 @@ namespace impm
       return;
     if (spec.preconditioner == PreconditionerKind::amg)
       {
-        if (!preconditioner.vmult || amg_is_worn ||
-            place_of_amg != matrix->place_of_entries())
+        amg_is_old = preconditioner.vmult && !amg_is_worn &&
+                     place_of_amg == matrix->place_of_entries();
+        if (!amg_is_old)
           set_up_amg();
         return;
       }
@@ -98,8 +99,7 @@ namespace impm
     ++system.counts->hierarchies;
     preconditioner =
       make_amg(*matrix, system.near_null_space(), system.n_components());
-    iterations_when_new.reset();
-    amg_is_worn  = false;
+    amg_is_old   = false;
     place_of_amg = matrix->place_of_entries();
   }
 
@@ -111,11 +111,11 @@ namespace impm
     // One of an earlier tangent does for this one, too, until it costs about
     // as many iterations as a new one costs time, or lets them fail.
     constexpr unsigned int worth_a_new_one = 10;
-    if (iterations_when_new)
+    if (amg_is_old)
       try
         {
           const unsigned int n = iterate(x, b);
-          amg_is_worn          = n > *iterations_when_new + worth_a_new_one;
+          amg_is_worn          = n > iterations_when_new + worth_a_new_one;
           return n;
         }
       catch (const ExceptionBase &)
@@ -123,9 +123,10 @@ namespace impm
           x = 0;
           set_up_amg();
         }
-    const unsigned int n = iterate(x, b);
-    iterations_when_new  = n;
-    return n;
+    amg_is_worn         = true; // if this fails
+    iterations_when_new = iterate(x, b);
+    amg_is_worn         = false;
+    return iterations_when_new;
   }
 
   unsigned int

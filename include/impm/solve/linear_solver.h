@@ -6,8 +6,6 @@
 #include <impm/input/sections/solver.h>
 #include <impm/solve/difference_quotient.h>
 
-#include <optional>
-
 namespace impm
 {
   /**
@@ -71,11 +69,11 @@ namespace impm
     std::unique_ptr<SparseMatrix> matrix;
     Vector                        inverse_diagonal;
     LinearMap                     preconditioner; ///< if there is one
-    /** Of the first solve with an AMG hierarchy. */
-    std::optional<unsigned int> iterations_when_new;
-    bool                        amg_is_worn = false;
-    unsigned int place_of_amg = 0; ///< of the matrix that it knows
-    LinearMap    inverse;          ///< of the matrix as it is, once factorized
+    // The AMG hierarchy: of an earlier tangent, not good enough for the next.
+    bool         amg_is_old = false, amg_is_worn = false;
+    unsigned int iterations_when_new = 0; ///< of a solve
+    unsigned int place_of_amg        = 0; ///< of the matrix that it knows
+    LinearMap    inverse; ///< of the matrix as it is, once factorized
   };
 } // namespace impm
 

@@ -1,13 +1,13 @@
 #include <deal.II/base/conditional_ostream.h>
 #include <deal.II/base/mpi.h>
 
+#include <impm/app/mpi_start.h>
 #include <impm/base/exceptions.h>
 #include <impm/run/signals.h>
 #include <impm/run/simulation.h>
 #include <impm/study/finer_run.h>
 #include <impm/study/study.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <new>
@@ -73,15 +73,15 @@ namespace
 int
 main(int argc, char **argv)
 {
-  // What a study starts can start MPI only if the study itself has not.
-  const bool is_study =
-    std::count(argv, argv + argc, std::string("--study")) > 0;
   std::optional<dealii::Utilities::MPI::MPI_InitFinalize> mpi;
-  if (!is_study || is_started_by_mpi())
-    mpi.emplace(argc, argv, 1);
-  const bool first =
-    !mpi || dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
-  dealii::ConditionalOStream errors(std::cerr, first);
+  dealii::ConditionalOStream                              errors(std::cerr);
+  const bool is_alone = !is_started_by_mpi();
+  if (!is_alone)
+    {
+      mpi.emplace(argc, argv, 1);
+      errors.set_condition(
+        dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0);
+    }
   // A failure of one rank alone would leave the others waiting.
   const auto fail_alone = [&](const std::string &why) {
     std::cerr << "impm_dealii: system failure: " << why << std::endl;
@@ -92,9 +92,16 @@ main(int argc, char **argv)
   try
     {
       const CommandLine line = parse_command_line(argc, argv);
+      // What needs no MPI does not wait for it, and what a study starts can
+      // start it only if the study itself has not.
+      if (is_alone && line.answer.empty() && !line.study)
+        {
+          prepare_mpi_for_one_process();
+          mpi.emplace(argc, argv, 1);
+        }
       if (line.answer.empty())
         compute(line);
-      else if (first)
+      else if (errors.is_active())
         std::cout << line.answer;
     }
   catch (const InputError &error)

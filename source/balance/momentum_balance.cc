@@ -195,91 +195,105 @@ namespace impm
   }
 
   template <int dim>
-  std::unique_ptr<SparseMatrix>
-  MomentumBalance<dim>::make_matrix() const
+  Unknowns
+  MomentumBalance<dim>::make_unknowns() const
   {
-    auto matrix = empty_matrix();
+    const auto &numbering = *parts.discretization.numbering;
+    return Unknowns(numbering.partitioner,
+                    parts.constraints.is_constrained,
+                    numbering.masters,
+                    dim);
+  }
+
+  template <int dim>
+  std::unique_ptr<SparseMatrix>
+  MomentumBalance<dim>::make_matrix(const Unknowns &unknowns) const
+  {
+    auto matrix = std::make_unique<SparseMatrix>(unknowns);
     for (const Term *term : parts.strain_terms)
       term->add_matrix(true, [&](const auto &nodes, const auto &) {
-        matrix->add_to_pattern(
-          parts.discretization.dofs_of_nodes(nodes.begin(), nodes.end()));
+        matrix->add_to_pattern(nodes);
       });
     matrix->end_pattern();
     if (!parts.smoothing)
       return matrix;
     // What is asked for is a product.
     stiffness   = std::move(matrix);
-    spread_mass = empty_matrix();
+    spread_mass = std::make_unique<SparseMatrix>(unknowns);
     parts.smoothing->fill_spread_mass(*spread_mass);
-    return empty_matrix();
+    return std::make_unique<SparseMatrix>(unknowns);
   }
 
   template <int dim>
   void
   MomentumBalance<dim>::assemble(SparseMatrix &matrix) const
   {
-    const auto   &discretization = parts.discretization;
-    SparseMatrix &K              = parts.smoothing ? *stiffness : matrix;
+    const Unknowns &unknowns = matrix.unknowns;
+    SparseMatrix   &K        = parts.smoothing ? *stiffness : matrix;
     K.set_zero();
     for (const Term *term : parts.strain_terms)
       term->add_matrix(false, [&](const auto &nodes, auto &block) {
         if (parts.end_weight != 1)
           block *= parts.end_weight;
-        K.add_block(block,
-                    discretization.dofs_of_nodes(nodes.begin(), nodes.end()));
+        K.add_block(nodes, block);
       });
-    K.compress(VectorOperation::add);
+    K.end_blocks();
 
-    // Rows that nothing has touched. A free one, without any stiffness, needs
-    // a place for its inertia: products leave out what is zero.
-    const auto &partitioner = *discretization.numbering->partitioner;
-    double      largest     = 0;
-    for (const auto dof : discretization.locally_owned_dofs())
-      largest = std::max(largest, K.diagonal(dof));
-    largest = Utilities::MPI::max(largest, discretization.communicator);
-    for (unsigned int i = 0; i < partitioner.locally_owned_size(); ++i)
-      {
-        const auto dof = partitioner.local_to_global(i);
-        if (K.diagonal(dof) != 0)
-          continue;
-        if (is_constrained(i))
-          K.add_to_diagonal(dof, largest);
-        else if (parts.smoothing)
-          K.add_to_diagonal(dof, std::numeric_limits<double>::min());
-      }
-    K.compress(VectorOperation::add);
+    // Rows of what is held beside a free value. A free one, without any
+    // stiffness, needs a place for its inertia: products leave out what is
+    // zero.
+    Vector diagonal;
+    unknowns.initialize(diagonal);
+    K.get_diagonal(diagonal);
+    double largest = 0;
+    for (const double entry : diagonal)
+      largest = std::max(largest, entry);
+    largest = Utilities::MPI::max(largest, parts.discretization.communicator);
+    for (unsigned int i = 0; i < diagonal.locally_owned_size(); ++i)
+      if (double &entry = diagonal.local_element(i); entry == 0)
+        entry = unknowns.is_held(i) ? largest :
+                parts.smoothing     ? std::numeric_limits<double>::min() :
+                                      0.;
+    K.set_diagonal(diagonal);
 
     if (parts.smoothing)
-      matrix.multiply(K, parts.smoothing->scaling, *spread_mass);
+      {
+        Vector scaling;
+        unknowns.initialize(scaling);
+        unknowns.pack(parts.smoothing->scaling, scaling);
+        matrix.multiply(K, scaling, *spread_mass);
+        matrix.get_diagonal(diagonal);
+      }
+    if (parts.node_terms.empty())
+      return;
     work = 0;
     for (const Term *term : parts.node_terms)
       term->add_diagonal(work);
-    for (unsigned int i = 0; i < work.locally_owned_size(); ++i)
-      if (!is_constrained(i) && work.local_element(i) > 0)
-        {
-          const auto dof = partitioner.local_to_global(i);
-          matrix.add_to_diagonal(dof, work.local_element(i));
-        }
-    matrix.compress(VectorOperation::add);
+    parts.constraints.set_zero(work);
+    Vector more;
+    unknowns.initialize(more);
+    unknowns.pack(work, more);
+    diagonal += more;
+    matrix.set_diagonal(diagonal);
   }
 
   template <int dim>
   std::vector<std::vector<double>>
-  MomentumBalance<dim>::near_null_space() const
+  MomentumBalance<dim>::near_null_space(const Unknowns &unknowns) const
   {
-    const unsigned int n =
-      parts.discretization.numbering->partitioner->locally_owned_size();
+    const unsigned int n = unknowns.n_owned();
     const unsigned int n_modes =
       dim + (parts.has_rotations ? dim * (dim - 1) / 2 : 0);
     std::vector<std::vector<double>> modes(n_modes, std::vector<double>(n));
     for (unsigned int i = 0; i < n; ++i)
       {
-        if (is_constrained(i))
+        if (unknowns.is_held(i))
           continue;
-        const unsigned int c     = i % dim;
-        const auto        &place = parts.discretization.node_positions[i / dim];
-        modes[c][i]              = 1;
-        unsigned int mode        = dim;
+        const unsigned int c = i % dim;
+        const auto        &place =
+          parts.discretization.node_positions[unknowns.nodes[i / dim]];
+        modes[c][i]       = 1;
+        unsigned int mode = dim;
         if (parts.has_rotations)
           for (unsigned int a = 0; a < dim; ++a)
             for (unsigned int b = a + 1; b < dim; ++b, ++mode)

@@ -70,27 +70,22 @@ namespace impm
   void
   VelocitySmoothing<dim>::fill_spread_mass(SparseMatrix &matrix) const
   {
-    // Components do not mix.
-    const auto &partitioner = *discretization.numbering->partitioner;
-    const auto  dofs        = [&](const auto &patch, const unsigned int c) {
-      SparseMatrix::Dofs result;
-      for (unsigned int n = patch.begin_nodes; n < patch.end_nodes; ++n)
-        result.push_back(
-          partitioner.local_to_global(dim * footprints.patch_nodes[n] + c));
-      return result;
+    const auto nodes = [&](const auto &patch) {
+      return make_array_view(footprints.patch_nodes.begin() + patch.begin_nodes,
+                             footprints.patch_nodes.begin() + patch.end_nodes);
     };
     for (const auto &patch : footprints.patches)
-      for (unsigned int c = 0; c < dim; ++c)
-        matrix.add_to_pattern(dofs(patch, c));
+      matrix.add_to_pattern(nodes(patch));
     matrix.end_pattern();
 
     constexpr unsigned int n_nodes = Footprints<dim>::n_nodes;
-    FullMatrix<double>     mass; // sum_p m_p S_pI S_pJ of the nodes of a patch
+    // sum_p m_p S_pI S_pJ of the nodes of a patch; components do not mix
+    FullMatrix<double>     mass;
     dealii::Vector<double> shares;
     for (const auto &patch : footprints.patches)
       {
         const unsigned int n = patch.end_nodes - patch.begin_nodes;
-        mass.reinit(n, n);
+        mass.reinit(dim * n, dim * n);
         for (unsigned int i = patch.begin_points; i < patch.end_points; ++i)
           {
             const unsigned int p = footprints.patch_points[i];
@@ -106,21 +101,22 @@ namespace impm
                 }
             for (unsigned int a = 0; a < n; ++a)
               for (unsigned int b = 0; b < n; ++b)
-                mass(a, b) += points.mass(p) * shares[a] * shares[b];
+                for (unsigned int c = 0; c < dim; ++c)
+                  mass(dim * a + c, dim * b + c) +=
+                    points.mass(p) * shares[a] * shares[b];
           }
-        for (unsigned int c = 0; c < dim; ++c)
-          matrix.add_block(mass, dofs(patch, c));
+        matrix.add_block(nodes(patch), mass);
       }
-    matrix.compress(VectorOperation::add);
+    matrix.end_blocks();
 
-    // Identity where constrained, whatever condensing has left there.
-    for (unsigned int i = 0; i < partitioner.locally_owned_size(); ++i)
-      if (constraints.is_constrained[i])
-        {
-          const auto dof = partitioner.local_to_global(i);
-          matrix.set_diagonal(dof, 1.);
-        }
-    matrix.compress(VectorOperation::insert);
+    const Unknowns &unknowns = matrix.unknowns;
+    Vector          diagonal;
+    unknowns.initialize(diagonal);
+    matrix.get_diagonal(diagonal);
+    for (unsigned int i = 0; i < diagonal.locally_owned_size(); ++i)
+      if (unknowns.is_held(i))
+        diagonal.local_element(i) = 1;
+    matrix.set_diagonal(diagonal);
   }
 
   template class VelocitySmoothing<2>;

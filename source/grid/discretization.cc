@@ -51,15 +51,20 @@ namespace impm
       std::make_shared<Utilities::MPI::Partitioner>(owned,
                                                     locally_relevant_dofs,
                                                     communicator);
+    if (any_hanging)
+      masters.resize(locally_relevant_dofs.n_elements() / dim);
     for (const auto &line : hanging_nodes.get_lines())
-      if (owned.is_element(line.index))
-        {
-          HangingValue value{partitioner->global_to_local(line.index), {}};
-          for (const auto &[master, weight] : line.entries)
-            value.masters.emplace_back(partitioner->global_to_local(master),
-                                       weight);
+      {
+        HangingValue value{partitioner->global_to_local(line.index), {}};
+        for (const auto &[master, weight] : line.entries)
+          value.masters.emplace_back(partitioner->global_to_local(master),
+                                     weight);
+        if (value.index % dim == 0)
+          for (const auto &[master, weight] : value.masters)
+            masters[value.index / dim].emplace_back(master / dim, weight);
+        if (owned.is_element(line.index))
           hanging.push_back(std::move(value));
-        }
+      }
   }
 
   template <int dim>
@@ -97,20 +102,6 @@ namespace impm
     for (unsigned int n = 0; n < node_positions.size(); ++n)
       for (unsigned int d = 0; d < dim; ++d)
         node_positions[n][d] = coordinates.local_element(dim * n + d);
-  }
-
-  template <int dim>
-  std::vector<types::global_dof_index>
-  Discretization<dim>::dofs_of_nodes(const unsigned int *begin,
-                                     const unsigned int *end) const
-  {
-    std::vector<types::global_dof_index> dofs;
-    dofs.reserve(dim * (end - begin));
-    for (; begin != end; ++begin)
-      for (unsigned int c = 0; c < dim; ++c)
-        dofs.push_back(
-          numbering->partitioner->local_to_global(dim * *begin + c));
-    return dofs;
   }
 
   template <int dim>

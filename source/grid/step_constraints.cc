@@ -1,4 +1,3 @@
-#include <impm/base/compat.h>
 #include <impm/grid/step_constraints.h>
 
 #include <algorithm>
@@ -51,11 +50,9 @@ namespace impm
     const double               time,
     const double               dt,
     const Vector              &support)
-    : constraints(compat::make_constraints(
-        discretization.locally_owned_dofs(),
-        discretization.numbering->locally_relevant_dofs))
-    , is_constrained(dim * discretization.node_positions.size(), false)
+    : is_constrained(dim * discretization.node_positions.size(), false)
     , carrier(is_constrained.size(), no_carrier)
+    , increment(is_constrained.size())
     , faces(faces)
     , grid(grid)
     , discretization(discretization)
@@ -68,31 +65,25 @@ namespace impm
     carriers.compress(VectorOperation::max);
     carriers.update_ghost_values();
 
-    // Not copied from those of the grid, which are closed: hanging nodes must
-    // be resolved against what their masters get below.
     const auto &hanging_nodes = discretization.numbering->hanging_nodes;
     const auto &partitioner   = *discretization.numbering->partitioner;
-    constraints.merge(hanging_nodes);
     for (unsigned int i = 0; i < is_constrained.size(); ++i)
       {
-        const auto dof = partitioner.local_to_global(i);
-        if (!hanging_nodes.is_constrained(dof))
+        const bool used = support.local_element(i) > 0;
+        const bool held = carriers.local_element(i) > 0;
+        if (discretization.numbering->any_hanging &&
+            hanging_nodes.is_constrained(partitioner.local_to_global(i)))
+          is_constrained[i] = true;
+        else if (!used)
+          is_constrained[i] = true;
+        else if (held)
           {
-            const bool held = carriers.local_element(i) > 0;
-            const bool used = support.local_element(i) > 0;
-            if (used && !held)
-              continue;
-            constraints.add_line(dof);
-            if (used)
-              {
-                carrier[i] =
-                  static_cast<unsigned int>(carriers.local_element(i)) - 1;
-                constraints.set_inhomogeneity(dof, prescribed(i, time, dt));
-              }
+            is_constrained[i] = true;
+            carrier[i] =
+              static_cast<unsigned int>(carriers.local_element(i)) - 1;
+            increment[i] = prescribed(i, time, dt);
           }
-        is_constrained[i] = true;
       }
-    constraints.close();
   }
 
   template <int dim>
@@ -176,6 +167,16 @@ namespace impm
 
   template <int dim>
   void
+  StepConstraints<dim>::set_prescribed(Vector &u) const
+  {
+    for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
+      if (is_constrained[i])
+        u.local_element(i) = increment[i];
+    discretization.interpolate_hanging(u);
+  }
+
+  template <int dim>
+  void
   StepConstraints<dim>::set_zero(Vector &vector) const
   {
     for (unsigned int i = 0; i < vector.locally_owned_size(); ++i)
@@ -187,11 +188,8 @@ namespace impm
   void
   StepConstraints<dim>::stop_held(Vector &vector) const
   {
-    const auto &partitioner = *discretization.numbering->partitioner;
     for (unsigned int i = 0; i < vector.locally_owned_size(); ++i)
-      if (carrier[i] != no_carrier &&
-          !constraints.is_inhomogeneously_constrained(
-            partitioner.local_to_global(i)))
+      if (carrier[i] != no_carrier && increment[i] == 0)
         vector.local_element(i) = 0;
   }
 

@@ -21,8 +21,12 @@ namespace impm
     , needs_matrix(spec.linear_solver == LinearSolverKind::direct ||
                    spec.tangent == TangentKind::matrix ||
                    spec.preconditioner == PreconditionerKind::amg)
+    , unknowns(system.make_unknowns())
   {
-    system.initialize(inverse_diagonal);
+    for (Vector *vector : {&solution, &right_side, &inverse_diagonal})
+      unknowns.initialize(*vector);
+    for (Vector *vector : {&full_src, &full_dst})
+      system.initialize(*vector);
   }
 
   NonlinearSystem::Evaluation
@@ -51,7 +55,7 @@ namespace impm
     if (!matrix)
       {
         TimerOutput::Scope scope(timer, "sparsity");
-        matrix = system.make_matrix();
+        matrix = system.make_matrix(unknowns);
       }
     TimerOutput::Scope scope(timer, "assembly");
     system.assemble(*matrix);
@@ -78,14 +82,17 @@ namespace impm
     // Unknowns that are momenta are near enough to the right-hand side: an
     // increment of a node with little mass says little.
     if (spec.preconditioner == PreconditionerKind::jacobi)
-      system.diagonal(inverse_diagonal);
+      {
+        system.diagonal(full_dst);
+        unknowns.pack(full_dst, inverse_diagonal);
+      }
     else if (system.weight_of_unknowns() != nullptr)
-      inverse_diagonal = *system.weight_of_unknowns();
+      unknowns.pack(*system.weight_of_unknowns(), inverse_diagonal);
     else
       return;
     for (unsigned int i = 0; i < inverse_diagonal.locally_owned_size(); ++i)
       inverse_diagonal.local_element(i) =
-        system.is_constrained(i) ? 1. : 1 / inverse_diagonal.local_element(i);
+        unknowns.is_held(i) ? 1. : 1 / inverse_diagonal.local_element(i);
     preconditioner.vmult = [this](Vector &dst, const Vector &src) {
       dst = src;
       dst.scale(inverse_diagonal);
@@ -97,63 +104,65 @@ namespace impm
   {
     TimerOutput::Scope scope(timer, "preconditioner");
     ++system.counts->hierarchies;
-    preconditioner =
-      make_amg(*matrix, system.near_null_space(), system.n_components());
-    amg_is_old   = false;
-    place_of_amg = matrix->place_of_entries();
+    preconditioner = make_amg(*matrix, system.near_null_space(unknowns));
+    amg_is_old     = false;
+    place_of_amg   = matrix->place_of_entries();
   }
 
   unsigned int
-  LinearSolver::iterate_or_renew(Vector &x, const Vector &b)
+  LinearSolver::iterate_or_renew()
   {
     if (spec.preconditioner != PreconditionerKind::amg)
-      return iterate(x, b);
+      return iterate();
     // One of an earlier tangent does for this one, too, until it costs about
     // as many iterations as a new one costs time, or lets them fail.
     constexpr unsigned int worth_a_new_one = 10;
     if (amg_is_old)
       try
         {
-          const unsigned int n = iterate(x, b);
+          const unsigned int n = iterate();
           amg_is_worn          = n > iterations_when_new + worth_a_new_one;
           return n;
         }
       catch (const ExceptionBase &)
         {
-          x = 0;
+          solution = 0;
           set_up_amg();
         }
     amg_is_worn         = true; // if this fails
-    iterations_when_new = iterate(x, b);
+    iterations_when_new = iterate();
     amg_is_worn         = false;
     return iterations_when_new;
   }
 
   unsigned int
-  LinearSolver::iterate(Vector &x, const Vector &b)
+  LinearSolver::iterate()
   {
     TimerOutput::Scope     scope(timer, "iterative solver");
-    const double           goal = spec.linear_tolerance * b.l2_norm();
+    const double           goal = spec.linear_tolerance * right_side.l2_norm();
     SolverControl          strict(spec.linear_iterations, goal);
     IterationNumberControl lenient(spec.linear_iterations, goal);
     SolverControl         &control = spec.accept_unfinished ? lenient : strict;
     LinearMap              tangent;
     tangent.vmult = [&](Vector &dst, const Vector &src) {
-      if (spec.tangent == TangentKind::difference_quotient)
-        quotient.vmult(dst, src);
-      else if (spec.tangent == TangentKind::matrix_free)
-        system.vmult(dst, src);
-      else
+      if (spec.tangent == TangentKind::matrix)
         {
           ++system.counts->operator_applications;
           matrix->vmult(dst, src);
+          return;
         }
+      unknowns.unpack(src, full_src);
+      if (spec.tangent == TangentKind::difference_quotient)
+        quotient.vmult(full_dst, full_src);
+      else
+        system.vmult(full_dst, full_src);
+      unknowns.pack(full_dst, dst);
     };
     const auto run = [&](auto &&solver) {
       if (preconditioner.vmult)
-        solver.solve(tangent, x, b, preconditioner);
+        solver.solve(tangent, solution, right_side, preconditioner);
       else
-        solver.solve(tangent, x, b, PreconditionIdentity());
+        solver.solve(tangent, solution, right_side, PreconditionIdentity());
     };
     if (spec.linear_solver == LinearSolverKind::cg)
       run(SolverCG<Vector>(control));
@@ -171,18 +180,23 @@ namespace impm
   LinearSolver::solve(Vector &x, const Vector &b)
   {
     const bool is_direct = spec.linear_solver == LinearSolverKind::direct;
-    x                    = 0;
+    solution             = 0;
+    unknowns.pack(b, right_side);
+    const auto answer = [&](const unsigned int n_iterations) {
+      unknowns.unpack(solution, x);
+      return n_iterations;
+    };
     if (!is_direct)
       try
         {
-          return iterate_or_renew(x, b);
+          return answer(iterate_or_renew());
         }
       catch (const ExceptionBase &)
         {
           if (spec.accept_unfinished)
             throw LinearizationError("the linear solver broke down");
           ++system.counts->solver_fallbacks;
-          x = 0;
+          solution = 0;
         }
     // What has been factorized must stay: a tangent may be solved with again.
     if (!needs_matrix && !inverse.vmult)
@@ -190,7 +204,7 @@ namespace impm
     TimerOutput::Scope scope(timer, "direct solver");
     if (!inverse.vmult)
       inverse = factorize(*matrix);
-    inverse.vmult(x, b);
-    return is_direct ? 1 : spec.linear_iterations;
+    inverse.vmult(solution, right_side);
+    return answer(is_direct ? 1 : spec.linear_iterations);
   }
 } // namespace impm

@@ -1,14 +1,19 @@
+#include <deal.II/lac/dynamic_sparsity_pattern.h>
 #include <deal.II/lac/solver_control.h>
 #include <deal.II/lac/trilinos_precondition.h>
 #include <deal.II/lac/trilinos_solver.h>
 #include <deal.II/lac/trilinos_sparse_matrix.h>
-#include <deal.II/lac/trilinos_sparsity_pattern.h>
 
 #include <impm/base/exceptions.h>
 #include <impm/solve/sparse_matrix.h>
 
+#include <Epetra_CrsGraph.h>
+#include <Epetra_Map.h>
+#include <Epetra_MpiComm.h>
+#include <Epetra_Vector.h>
 #include <Teuchos_ParameterList.hpp>
 
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <sstream>
@@ -19,75 +24,340 @@ namespace impm
 
   struct SparseMatrix::Trilinos
   {
-    TrilinosWrappers::SparsityPattern pattern;
-    TrilinosWrappers::SparseMatrix    matrix;
+    TrilinosWrappers::SparseMatrix matrix;
   };
 
-  SparseMatrix::SparseMatrix(const Utilities::MPI::Partitioner &partitioner,
-                             const AffineConstraints<double>   &constraints)
-    : trilinos(std::make_unique<Trilinos>())
-    , constraints(constraints)
-  {
-    const IndexSet &owned = partitioner.locally_owned_range();
-    trilinos->pattern.reinit(owned,
-                             owned,
-                             constraints.get_local_lines(),
-                             partitioner.get_mpi_communicator());
-  }
+  SparseMatrix::SparseMatrix(const Unknowns &unknowns)
+    : unknowns(unknowns)
+    , is_parallel(Utilities::MPI::n_mpi_processes(
+                    unknowns.partitioner->get_mpi_communicator()) > 1)
+    , trilinos(std::make_unique<Trilinos>())
+  {}
 
   SparseMatrix::~SparseMatrix() = default;
 
-  void
-  SparseMatrix::add_to_pattern(const Dofs &dofs)
+  unsigned int
+  SparseMatrix::place_in(const Block &block, const unsigned int node) const
   {
-    constraints.add_entries_local_to_global(dofs, trilinos->pattern);
+    const auto begin = block_nodes.begin() + block.begin;
+    return std::find(begin, block_nodes.begin() + block.end, node) - begin;
+  }
+
+  void
+  SparseMatrix::add_to_pattern(const Nodes &nodes)
+  {
+    const auto &masters = unknowns.masters;
+    const auto &held    = unknowns.held;
+    Block       block;
+    block.begin        = block_nodes.size();
+    block.begin_places = n_places_of_blocks;
+    block.end          = block.begin;
+    for (const unsigned int node : nodes)
+      block.any_hangs =
+        block.any_hangs || (!masters.empty() && !masters[node].empty());
+    const auto append = [&](const unsigned int node) {
+      block_nodes.push_back(node);
+      ++block.end;
+      const unsigned int n = unknowns.n_components;
+      block.any_held =
+        block.any_held || std::any_of(held.begin() + n * node,
+                                      held.begin() + n * (node + 1),
+                                      [](const char is) { return is != 0; });
+    };
+    const auto append_once = [&](const unsigned int node) {
+      if (place_in(block, node) == block.end - block.begin)
+        append(node);
+    };
+    for (const unsigned int node : nodes)
+      if (!block.any_hangs)
+        append(node);
+      else if (masters[node].empty())
+        append_once(node);
+      else
+        for (const auto &[master, weight] : masters[node])
+          append_once(master);
+    const std::size_t n = block.end - block.begin;
+    n_places_of_blocks += n * n;
+    blocks.push_back(block);
+  }
+
+  DynamicSparsityPattern
+  SparseMatrix::couple_nodes()
+  {
+    const unsigned int n_components = unknowns.n_components;
+    const auto        &first        = unknowns.first;
+
+    // Rows that this rank owns, or writes to.
+    const auto n_nodes = unknowns.size() / n_components;
+    IndexSet   known(n_nodes);
+    for (const auto number : first)
+      if (number != Unknowns::none)
+        known.add_index(number / n_components);
+    known.compress();
+    DynamicSparsityPattern        pairs(n_nodes, n_nodes, known);
+    std::vector<Unknowns::Number> columns;
+    for (const auto &block : blocks)
+      {
+        columns.clear();
+        for (unsigned int i = block.begin; i < block.end; ++i)
+          if (first[block_nodes[i]] != Unknowns::none)
+            columns.push_back(first[block_nodes[i]] / n_components);
+        std::sort(columns.begin(), columns.end());
+        for (const auto row : columns)
+          pairs.add_entries(row, columns.begin(), columns.end(), true);
+      }
+    for (const unsigned int node : unknowns.nodes)
+      pairs.add(first[node] / n_components, first[node] / n_components);
+    if (is_parallel)
+      remote_rows.exchange_pattern(unknowns, known, pairs);
+    return pairs;
   }
 
   void
   SparseMatrix::end_pattern()
   {
-    auto &pattern = trilinos->pattern;
-    for (const auto dof : pattern.locally_owned_range_indices())
-      pattern.add(dof, dof);
-    pattern.compress();
-    trilinos->matrix.reinit(pattern);
-    pattern.clear();
+    using Index                     = TrilinosWrappers::types::int_type;
+    const unsigned int n_components = unknowns.n_components;
+    const auto        &first        = unknowns.first;
+    const unsigned int n_rows       = unknowns.n_owned();
+    const auto         pairs        = couple_nodes();
+    const auto         add_columns  = [&](const unsigned int node, auto add) {
+      const auto row = first[node] / n_components;
+      for (unsigned int k = 0; k < pairs.row_length(row); ++k)
+        add(n_components * pairs.column_number(row, k));
+    };
+
+    // Left to Trilinos, the columns of a node on another rank would not be
+    // neighbours.
+    for (const unsigned int node : unknowns.nodes)
+      add_columns(node, [&](const auto column) {
+        if (!unknowns.partitioner->in_local_range(column))
+          remote_columns.push_back(column);
+      });
+    std::sort(remote_columns.begin(), remote_columns.end());
+    remote_columns.erase(std::unique(remote_columns.begin(),
+                                     remote_columns.end()),
+                         remote_columns.end());
+    std::vector<Index> column_numbers;
+    const auto         append = [&](const auto number) {
+      for (unsigned int c = 0; c < n_components; ++c)
+        column_numbers.push_back(number + c);
+    };
+    for (const unsigned int node : unknowns.nodes)
+      append(first[node]);
+    for (const auto number : remote_columns)
+      append(number);
+
+    std::vector<int> lengths;
+    for (const unsigned int node : unknowns.nodes)
+      lengths.insert(lengths.end(),
+                     n_components,
+                     n_components *
+                       pairs.row_length(first[node] / n_components));
+    const Epetra_MpiComm communicator(
+      unknowns.partitioner->get_mpi_communicator());
+    const Epetra_Map rows(static_cast<Index>(unknowns.size()),
+                          static_cast<int>(n_rows),
+                          0,
+                          communicator);
+    const Epetra_Map columns(static_cast<Index>(-1),
+                             static_cast<int>(column_numbers.size()),
+                             column_numbers.data(),
+                             0,
+                             communicator);
+    Epetra_CrsGraph  graph(Copy, rows, columns, lengths.data(), true);
+    std::vector<int> in_row;
+    int              row = 0;
+    for (const unsigned int node : unknowns.nodes)
+      {
+        in_row.clear();
+        add_columns(node, [&](const auto column) {
+          for (unsigned int c = 0; c < n_components; ++c)
+            in_row.push_back(local_column(column) + c);
+        });
+        std::sort(in_row.begin(), in_row.end());
+        for (unsigned int c = 0; c < n_components; ++c, ++row)
+          graph.InsertMyIndices(row, lengths[row], in_row.data());
+      }
+    graph.FillComplete(rows, rows);
+    graph.OptimizeStorage();
+    trilinos->matrix.reinit(Epetra_CrsMatrix(Copy, graph), false);
+    find_places();
+  }
+
+  int
+  SparseMatrix::local_column(const Unknowns::Number number) const
+  {
+    const auto &partitioner = *unknowns.partitioner;
+    if (partitioner.in_local_range(number))
+      return partitioner.global_to_local(number);
+    const auto found =
+      std::lower_bound(remote_columns.begin(), remote_columns.end(), number);
+    return unknowns.n_owned() +
+           unknowns.n_components * (found - remote_columns.begin());
+  }
+
+  void
+  SparseMatrix::find_places()
+  {
+    const unsigned int n_components = unknowns.n_components;
+    const auto        &partitioner  = *unknowns.partitioner;
+    const auto        &matrix       = trilinos->matrix.trilinos_matrix();
+    int               *row_starts, *columns;
+    const int          error =
+      matrix.ExtractCrsDataPointers(row_starts, columns, values);
+    AssertThrow(error == 0, ExcInternalError());
+    row_lengths.resize(unknowns.nodes.size());
+    for (unsigned int r = 0; r < row_lengths.size(); ++r)
+      row_lengths[r] =
+        row_starts[n_components * r + 1] - row_starts[n_components * r];
+
+    const auto place_in_row = [&](const unsigned int row, const int column) {
+      return std::lower_bound(columns + row_starts[row],
+                              columns + row_starts[row + 1],
+                              column) -
+             columns;
+    };
+    places.reserve(n_places_of_blocks);
+    for (const auto &block : blocks)
+      for (unsigned int i = block.begin; i < block.end; ++i)
+        {
+          const auto row = unknowns.first[block_nodes[i]];
+          const bool is_here =
+            row != Unknowns::none && partitioner.in_local_range(row);
+          for (unsigned int j = block.begin; j < block.end; ++j)
+            if (const auto column = unknowns.first[block_nodes[j]];
+                row == Unknowns::none || column == Unknowns::none)
+              places.push_back(no_place);
+            else if (is_here)
+              places.push_back(place_in_row(partitioner.global_to_local(row),
+                                            local_column(column)));
+            else
+              places.push_back(
+                remote_rows.place(row / n_components, column / n_components));
+        }
+    remote_rows.find_places(
+      [&](const auto row, const auto column) {
+        return place_in_row(partitioner.global_to_local(n_components * row),
+                            local_column(n_components * column));
+      },
+      [&](const auto row) {
+        return row_lengths[partitioner.global_to_local(n_components * row) /
+                           n_components];
+      });
   }
 
   void
   SparseMatrix::set_zero()
   {
     trilinos->matrix = 0;
+    next_block       = 0;
   }
 
   void
-  SparseMatrix::add_block(const FullMatrix<double> &block, const Dofs &dofs)
+  SparseMatrix::add_block(const Nodes &nodes, FullMatrix<double> &block)
   {
-    constraints.distribute_local_to_global(block, dofs, trilinos->matrix);
+    const Block &where   = blocks[next_block++];
+    auto        *entries = &block;
+    if (where.any_hangs)
+      {
+        eliminate_hanging(where, nodes, block, eliminated);
+        entries = &eliminated;
+      }
+    const unsigned int n_components = unknowns.n_components;
+    if (where.any_held)
+      for (unsigned int i = 0; i < entries->m(); ++i)
+        if (unknowns
+              .held[n_components * block_nodes[where.begin + i / n_components] +
+                    i % n_components])
+          for (unsigned int j = 0; j < entries->n(); ++j)
+            (*entries)(i, j) = (*entries)(j, i) = 0;
+    if (n_components == 2)
+      add_entries<2>(where, *entries);
+    else
+      add_entries<3>(where, *entries);
   }
 
   void
-  SparseMatrix::add_to_diagonal(const Dof dof, const double value)
+  SparseMatrix::eliminate_hanging(const Block              &block,
+                                  const Nodes              &nodes,
+                                  const FullMatrix<double> &before,
+                                  FullMatrix<double>       &after) const
   {
-    trilinos->matrix.add(dof, dof, value);
+    const unsigned int             n_components = unknowns.n_components;
+    std::vector<Unknowns::Masters> parts(nodes.size());
+    for (unsigned int a = 0; a < nodes.size(); ++a)
+      if (const auto &masters = unknowns.masters[nodes[a]]; masters.empty())
+        parts[a] = {{place_in(block, nodes[a]), 1.}};
+      else
+        for (const auto &[master, weight] : masters)
+          parts[a].emplace_back(place_in(block, master), weight);
+    const unsigned int n = n_components * (block.end - block.begin);
+    after.reinit(n, n);
+    for (unsigned int a = 0; a < nodes.size(); ++a)
+      for (unsigned int b = 0; b < nodes.size(); ++b)
+        for (const auto &[i, row_weight] : parts[a])
+          for (const auto &[j, column_weight] : parts[b])
+            for (unsigned int c = 0; c < n_components; ++c)
+              for (unsigned int d = 0; d < n_components; ++d)
+                after(n_components * i + c, n_components * j + d) +=
+                  row_weight * column_weight *
+                  before(n_components * a + c, n_components * b + d);
+  }
+
+  template <unsigned int n_components>
+  void
+  SparseMatrix::add_entries(const Block              &block,
+                            const FullMatrix<double> &entries)
+  {
+    const unsigned int  n     = block.end - block.begin;
+    const unsigned int *place = &places[block.begin_places];
+    for (unsigned int i = 0; i < n; ++i)
+      {
+        const auto row = unknowns.first[block_nodes[block.begin + i]];
+        if (row == Unknowns::none)
+          {
+            place += n;
+            continue;
+          }
+        const bool         is_here = unknowns.partitioner->in_local_range(row);
+        const unsigned int length =
+          is_here ? row_lengths[unknowns.partitioner->global_to_local(row) /
+                                n_components] :
+                    remote_rows.row_length(row / n_components);
+        double *const target = is_here ? values : remote_rows.values.data();
+        for (unsigned int j = 0; j < n; ++j, ++place)
+          if (*place != no_place)
+            for (unsigned int c = 0; c < n_components; ++c)
+              for (unsigned int d = 0; d < n_components; ++d)
+                target[*place + c * length + d] +=
+                  entries(n_components * i + c, n_components * j + d);
+      }
   }
 
   void
-  SparseMatrix::set_diagonal(const Dof dof, const double value)
+  SparseMatrix::end_blocks()
   {
-    trilinos->matrix.set(dof, dof, value);
-  }
-
-  double
-  SparseMatrix::diagonal(const Dof dof) const
-  {
-    return trilinos->matrix.diag_element(dof);
+    if (is_parallel)
+      remote_rows.exchange_values(values);
   }
 
   void
-  SparseMatrix::compress(const VectorOperation::values operation)
+  SparseMatrix::get_diagonal(Vector &diagonal) const
   {
-    trilinos->matrix.compress(operation);
+    const auto   &matrix = trilinos->matrix.trilinos_matrix();
+    Epetra_Vector view(View, matrix.RowMap(), diagonal.begin());
+    matrix.ExtractDiagonalCopy(view);
+  }
+
+  void
+  SparseMatrix::set_diagonal(const Vector &diagonal)
+  {
+    // deal.II sets entries one by one.
+    auto &matrix =
+      const_cast<Epetra_CrsMatrix &>(trilinos->matrix.trilinos_matrix());
+    matrix.ReplaceDiagonalValues(Epetra_Vector(
+      Copy, matrix.RowMap(), const_cast<double *>(diagonal.begin())));
   }
 
   void
@@ -103,9 +373,7 @@ namespace impm
   {
     TrilinosWrappers::MPI::Vector scaling(D.locally_owned_elements(),
                                           D.get_mpi_communicator());
-    for (const auto dof : D.locally_owned_elements())
-      scaling[dof] = D[dof];
-    scaling.compress(VectorOperation::insert);
+    std::copy(D.begin(), D.end(), scaling.begin());
     ++n_places;
     A.trilinos->matrix.mmult(trilinos->matrix, B.trilinos->matrix, scaling);
   }
@@ -135,8 +403,7 @@ namespace impm
 
   LinearMap
   make_amg(const SparseMatrix                     &matrix,
-           const std::vector<std::vector<double>> &modes,
-           const unsigned int                      n_components)
+           const std::vector<std::vector<double>> &modes)
   {
     const auto amg = std::make_shared<Amg>();
     for (const auto &mode : modes)
@@ -151,6 +418,7 @@ namespace impm
     std::unique_ptr<Epetra_MultiVector> unused;
     const auto &trilinos_matrix = matrix.trilinos->matrix;
     data.set_parameters(parameters, unused, trilinos_matrix);
+    const unsigned int n_components = matrix.unknowns.n_components;
     parameters.set("PDE equations", static_cast<int>(n_components));
     // To factorize more is dear in space, not in the plane.
     parameters.set("coarse: max size", n_components == 3 ? 500 : 2000);

@@ -13,7 +13,6 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <iomanip>
@@ -289,11 +288,5 @@ namespace impm
                              " runs of the study went to its end; the first "
                              "says: " +
                              runs[0].result.status);
-  }
-
-  bool
-  is_started_by_mpi()
-  {
-    return std::getenv("OMPI_COMM_WORLD_SIZE") || std::getenv("PMI_SIZE");
   }
 } // namespace impm

@@ -99,21 +99,18 @@ namespace impm
     void
     diagonal(Vector &diagonal) const override;
 
+    Unknowns
+    make_unknowns() const override;
+
     std::unique_ptr<SparseMatrix>
-    make_matrix() const override;
+    make_matrix(const Unknowns &unknowns) const override;
 
     void
     assemble(SparseMatrix &matrix) const override;
 
     /** Translations and, where they are free, rotations. */
     std::vector<std::vector<double>>
-    near_null_space() const override;
-
-    unsigned int
-    n_components() const override
-    {
-      return dim;
-    }
+    near_null_space(const Unknowns &unknowns) const override;
 
     void
     initialize(Vector &vector) const override
@@ -196,14 +193,6 @@ namespace impm
     /** dst = K C times `work`, condensed. */
     void
     apply_tangent(Vector &dst) const;
-
-    std::unique_ptr<SparseMatrix>
-    empty_matrix() const
-    {
-      return std::make_unique<SparseMatrix>(
-        *parts.discretization.numbering->partitioner,
-        parts.constraints.constraints);
-    }
 
     /** Takes apart the residual that `forces` have, which came of `strain
      * forces` alone before. */

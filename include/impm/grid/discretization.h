@@ -51,8 +51,11 @@ namespace impm
       unsigned int                                 index;
       std::vector<std::pair<unsigned int, double>> masters;
     };
-    std::vector<HangingValue> hanging;     ///< those that this rank owns
-    const bool                any_hanging; ///< on any rank
+    std::vector<HangingValue> hanging; ///< those that this rank owns
+    /** Nodes that a hanging one follows, of every local node, with their
+     * weights; an empty list if none hangs. */
+    std::vector<std::vector<std::pair<unsigned int, double>>> masters;
+    const bool any_hanging; ///< on any rank
   };
 
   /**
@@ -93,10 +96,6 @@ namespace impm
                    dim;
       return nodes;
     }
-
-    /** Unknowns (deal.II's numbers) of nodes in a range of local numbers. */
-    std::vector<dealii::types::global_dof_index>
-    dofs_of_nodes(const unsigned int *begin, const unsigned int *end) const;
 
     /** The same cell, with unknowns. */
     CellIterator

@@ -42,10 +42,7 @@ namespace impm
 
     /** Writes what is prescribed into `u`, zero on unused nodes. Collective. */
     void
-    set_prescribed(Vector &u) const
-    {
-      constraints.distribute(u);
-    }
+    set_prescribed(Vector &u) const;
 
     /** Zero on all constrained values that this rank owns. */
     void
@@ -81,13 +78,14 @@ namespace impm
 
     static constexpr unsigned int no_carrier = -1;
 
-    dealii::AffineConstraints<double> constraints;
-
     /** Whether a local element is constrained. */
     std::vector<char> is_constrained;
 
     /** What holds a local element, or no_carrier. */
     std::vector<unsigned int> carrier;
+
+    /** What is prescribed of a local element in the step (m), else zero. */
+    std::vector<double> increment;
 
   private:
     // Where they hold a value, it is at least the number of the carrier plus 1.

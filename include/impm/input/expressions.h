@@ -12,6 +12,7 @@
 #include <iostream>
 #include <map>
 #include <memory>
+#include <regex>
 #include <sstream>
 #include <string>
 
@@ -84,6 +85,20 @@ namespace impm
                          variables + " and the constants: " +
                          dealii::Utilities::trim(said.back()));
     return function;
+  }
+
+  /** Whether any of the expressions of a function names one of these words: a
+   * function that names no place has one value everywhere. */
+  template <int n_variables>
+  bool
+  names_any_of(const dealii::FunctionParser<n_variables> &function,
+               const std::string                         &words)
+  {
+    const std::regex word("\\b(" + words + ")\\b");
+    for (const auto &expression : function.get_expressions())
+      if (std::regex_search(expression, word))
+        return true;
+    return false;
   }
 } // namespace impm
 

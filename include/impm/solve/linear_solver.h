@@ -53,12 +53,12 @@ namespace impm
     set_up_amg();
 
     unsigned int
-    iterate(Vector &x, const Vector &b);
+    iterate();
 
     /** The same, with another hierarchy where the one of an earlier tangent
      * fails. */
     unsigned int
-    iterate_or_renew(Vector &x, const Vector &b);
+    iterate_or_renew();
 
     const SolverSpec    &spec;
     NonlinearSystem     &system;
@@ -66,14 +66,17 @@ namespace impm
     DifferenceQuotient   quotient;
 
     const bool                    needs_matrix; ///< of every tangent
+    const Unknowns                unknowns;
     std::unique_ptr<SparseMatrix> matrix;
-    Vector                        inverse_diagonal;
     LinearMap                     preconditioner; ///< if there is one
     // The AMG hierarchy: of an earlier tangent, not good enough for the next.
     bool         amg_is_old = false, amg_is_worn = false;
     unsigned int iterations_when_new = 0; ///< of a solve
     unsigned int place_of_amg        = 0; ///< of the matrix that it knows
     LinearMap    inverse; ///< of the matrix as it is, once factorized
+
+    // Compact vectors, but for those of operators that know full ones.
+    Vector solution, right_side, inverse_diagonal, full_src, full_dst;
   };
 } // namespace impm
 

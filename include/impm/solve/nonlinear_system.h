@@ -86,21 +86,22 @@ namespace impm
     virtual void
     diagonal(Vector &diagonal) const = 0;
 
-    /** A matrix with the pattern of the tangent. */
+    /** What its linear systems are solved for. */
+    virtual Unknowns
+    make_unknowns() const = 0;
+
+    /** A matrix with the pattern of the tangent. The unknowns must live as
+     * long. */
     virtual std::unique_ptr<SparseMatrix>
-    make_matrix() const = 0;
+    make_matrix(const Unknowns &unknowns) const = 0;
 
     /** Fills it, with something positive on the diagonal where constrained. */
     virtual void
     assemble(SparseMatrix &matrix) const = 0;
 
-    /** Directions that cost hardly any energy, by locally owned value. */
+    /** Directions that cost hardly any energy, by owned compact index. */
     virtual std::vector<std::vector<double>>
-    near_null_space() const = 0;
-
-    /** Of a node: its values follow each other. */
-    virtual unsigned int
-    n_components() const = 0;
+    near_null_space(const Unknowns &unknowns) const = 0;
 
     /** A vector of unknowns, zero. */
     virtual void

@@ -1,13 +1,11 @@
 #ifndef impm_solve_sparse_matrix_h
 #define impm_solve_sparse_matrix_h
 
-#include <deal.II/base/partitioner.h>
+#include <deal.II/base/array_view.h>
 
-#include <deal.II/lac/affine_constraints.h>
 #include <deal.II/lac/full_matrix.h>
-#include <deal.II/lac/vector_operation.h>
 
-#include <impm/base/vector.h>
+#include <impm/solve/remote_rows.h>
 
 #include <functional>
 #include <memory>
@@ -19,47 +17,49 @@ namespace impm
    * The distributed matrix of a linear system, filled block by block. This and
    * what solves with it is all that the program knows of Trilinos, and
    * solve/sparse_matrix.cc is the one file that does.
+   *
+   * Blocks are of whole nodes. Where each of them goes is found once: those who
+   * fill the matrix must give the blocks in the order in which they gave them
+   * to the pattern.
    */
   class SparseMatrix
   {
   public:
-    using Dof  = dealii::types::global_dof_index;
-    using Dofs = std::vector<Dof>;
+    using Nodes = dealii::ArrayView<const unsigned int>;
 
-    /** The constraints must live as long. */
-    SparseMatrix(const dealii::Utilities::MPI::Partitioner &partitioner,
-                 const dealii::AffineConstraints<double>   &constraints);
+    /** The unknowns must live as long. */
+    explicit SparseMatrix(const Unknowns &unknowns);
     ~SparseMatrix();
 
-    /** Says that a block of unknowns will couple; then end_pattern(). */
+    /** Says that the nodes of a block will couple; then end_pattern(). */
     void
-    add_to_pattern(const Dofs &dofs);
+    add_to_pattern(const Nodes &nodes);
 
     /** The diagonal is there in any case. The matrix is zero. Collective. */
     void
     end_pattern();
 
+    /** Sets the matrix to zero; the block that comes next is the first. */
     void
     set_zero();
 
-    /** Adds a block, with constraints eliminated. */
+    /** Adds the next block, which has its node's values side by side, with
+     * constraints eliminated: rows and columns of what is held are left out.
+     * Uses the block up. */
     void
-    add_block(const dealii::FullMatrix<double> &block, const Dofs &dofs);
+    add_block(const Nodes &nodes, dealii::FullMatrix<double> &block);
 
-    /** Adds to an entry of the diagonal that this rank owns. */
+    /** After a series of blocks on any rank. Collective. */
     void
-    add_to_diagonal(Dof dof, double value);
+    end_blocks();
 
-    /** Overwrites one. */
+    /** Reads the diagonal, of a compact vector. */
     void
-    set_diagonal(Dof dof, double value);
+    get_diagonal(Vector &diagonal) const;
 
-    double
-    diagonal(Dof dof) const;
-
-    /** After a series of add...() or set...() on any rank. Collective. */
+    /** Overwrites the diagonal, where it has entries. */
     void
-    compress(dealii::VectorOperation::values operation);
+    set_diagonal(const Vector &diagonal);
 
     void
     vmult(Vector &dst, const Vector &src) const;
@@ -76,12 +76,68 @@ namespace impm
     void
     multiply(const SparseMatrix &A, const Vector &D, const SparseMatrix &B);
 
+    const Unknowns &unknowns;
+    const bool      is_parallel;
+
     struct Trilinos;
     const std::unique_ptr<Trilinos> trilinos;
 
   private:
-    const dealii::AffineConstraints<double> &constraints;
-    unsigned int                             n_places = 0;
+    /** Nodes that a block couples once hanging ones are eliminated. */
+    struct Block
+    {
+      unsigned int begin, end;        ///< in block_nodes
+      std::size_t  begin_places;      ///< by pairs of nodes
+      bool         any_hangs = false; ///< so that nodes are not those given
+      bool         any_held  = false;
+    };
+
+    /** Among the nodes that a block couples. */
+    unsigned int
+    place_in(const Block &block, unsigned int node) const;
+
+    /** Replaces hanging nodes by their masters. */
+    void
+    eliminate_hanging(const Block                      &block,
+                      const Nodes                      &nodes,
+                      const dealii::FullMatrix<double> &before,
+                      dealii::FullMatrix<double>       &after) const;
+
+    template <unsigned int n_components>
+    void
+    add_entries(const Block &block, const dealii::FullMatrix<double> &entries);
+
+    /** Which nodes are coupled, by number, in rows that this rank owns or
+     * writes to. Collective. */
+    dealii::DynamicSparsityPattern
+    couple_nodes();
+
+    /** Of the first unknown of a node: what this rank owns comes first. */
+    int
+    local_column(Unknowns::Number number) const;
+
+    /** Finds the places of the blocks' entries. */
+    void
+    find_places();
+
+    unsigned int                       n_places = 0;
+    std::vector<Block>                 blocks;
+    std::vector<unsigned int>          block_nodes;
+    std::size_t                        next_block = 0;
+    mutable dealii::FullMatrix<double> eliminated;
+
+    /** For each pair of nodes of a block the place of their first entry in the
+     * first of the rows among the values of the matrix, or of those for other
+     * ranks, or no_place. */
+    std::vector<unsigned int>     places;
+    std::size_t                   n_places_of_blocks = 0;
+    static constexpr unsigned int no_place           = -1;
+
+    double                   *values = nullptr; ///< of the matrix
+    std::vector<unsigned int> row_lengths;      ///< by owned node with unknowns
+    RemoteRows                remote_rows;
+    /** First unknowns of nodes of other ranks in rows of this one. */
+    std::vector<Unknowns::Number> remote_columns;
   };
 
   /** What deal.II's solvers know of a matrix, a preconditioner, an inverse. */
@@ -91,17 +147,15 @@ namespace impm
   };
 
   /**
-   * Smoothed aggregation (ML) of nodes with so many values each for elastic
-   * bodies; `modes` are what costs hardly any energy, by locally owned value.
-   * The matrix has to stay where it is. When it gets other entries, those are
-   * smoothed with, while the coarser levels stay as they were. Throws
-   * LinearizationError, on every rank alike, when the matrix is singular.
-   * Collective.
+   * Smoothed aggregation (ML) of nodes for elastic bodies; `modes` are what
+   * costs hardly any energy, by owned compact index. The matrix has to stay
+   * where it is. When it gets other entries, those are smoothed with, while the
+   * coarser levels stay as they were. Throws LinearizationError, on every rank
+   * alike, when the matrix is singular. Collective.
    */
   LinearMap
   make_amg(const SparseMatrix                     &matrix,
-           const std::vector<std::vector<double>> &modes,
-           unsigned int                            n_components);
+           const std::vector<std::vector<double>> &modes);
 
   /**
    * The inverse of a matrix that stays as it is, by factorization (Amesos,

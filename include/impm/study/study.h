@@ -102,10 +102,6 @@ namespace impm
    */
   void
   run_study(const CommandLine &line, ParameterFile &file);
-
-  /** Whether mpirun or its like has started this process. */
-  bool
-  is_started_by_mpi();
 } // namespace impm
 
 #endif

@@ -5,6 +5,7 @@
 
 #include <impm/balance/terms/loads.h>
 #include <impm/base/exceptions.h>
+#include <impm/input/expressions.h>
 
 #include <algorithm>
 #include <numeric>
@@ -29,15 +30,18 @@ namespace impm
       const auto subtract =
         [&](auto &density, const bool is_initial, const auto &amount) {
           density.set_time(instant);
-          unsigned int next = 0;
+          density.vector_value(Point<dim>(), value);
+          const bool   varies = names_any_of(density, "x|y|z|rand|rand_seed");
+          unsigned int next   = 0;
           for (const auto &particle : points.sorted.particles)
             {
               const unsigned int p = next++;
               if (amount(p) == 0)
                 continue;
-              density.vector_value(is_initial ? points.initial_position(p) :
-                                                particle.get_location(),
-                                   value);
+              if (varies)
+                density.vector_value(is_initial ? points.initial_position(p) :
+                                                  particle.get_location(),
+                                     value);
               for (unsigned int c = 0; c < dim; ++c)
                 forces[p][c] -= amount(p) * value[c];
             }
@@ -100,6 +104,27 @@ namespace impm
               }
           }
     }
+
+    template <int dim>
+    bool
+    is_steady(const Scene<dim> &scene)
+    {
+      const auto changes = [](const auto &density) {
+        return density && names_any_of(*density, "t|rand|rand_seed");
+      };
+      return !changes(scene.loads.body_force) &&
+             std::none_of(scene.loads.tractions.begin(),
+                          scene.loads.tractions.end(),
+                          [&](const auto &traction) {
+                            return changes(traction.value);
+                          }) &&
+             std::none_of(scene.faces.begin(),
+                          scene.faces.end(),
+                          [&](const auto &face) {
+                            return changes(face.traction);
+                          });
+    }
+
     template <int dim>
     bool
     acts_on_points(const Scene<dim> &scene)
@@ -154,7 +179,10 @@ namespace impm
       discretization.condense_hanging(load);
     };
     gather(from, at_start);
-    gather(to, at_end);
+    if (is_steady(scene))
+      at_end = at_start;
+    else
+      gather(to, at_end);
   }
 
   template <int dim>

@@ -1,0 +1,25 @@
+#include <impm/app/mpi_start.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+
+namespace impm
+{
+  bool
+  is_started_by_mpi()
+  {
+    const std::array<const char *, 4> signs = {
+      {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_SIZE", "PMI_RANK"}};
+    return std::any_of(signs.begin(), signs.end(), [](const char *sign) {
+      return std::getenv(sign) != nullptr;
+    });
+  }
+
+  void
+  prepare_mpi_for_one_process()
+  {
+    setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
+    setenv("OMPI_MCA_pml", "ob1", 0);
+  }
+} // namespace impm

@@ -19,7 +19,8 @@ namespace impm
   void
   prepare_mpi_for_one_process()
   {
-    setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
+    // Without its daemon (ess_singleton_isolated) it would start even faster,
+    // but processes that run at the same time would share, and delete, files.
     setenv("OMPI_MCA_pml", "ob1", 0);
   }
 } // namespace impm

@@ -218,6 +218,8 @@ namespace impm
                               column) -
              columns;
     };
+    for (unsigned int i = 0; i < unknowns.n_owned(); ++i)
+      diagonal_places.push_back(place_in_row(i, i));
     places.reserve(n_places_of_blocks);
     for (const auto &block : blocks)
       for (unsigned int i = block.begin; i < block.end; ++i)
@@ -345,19 +347,31 @@ namespace impm
   void
   SparseMatrix::get_diagonal(Vector &diagonal) const
   {
-    const auto   &matrix = trilinos->matrix.trilinos_matrix();
-    Epetra_Vector view(View, matrix.RowMap(), diagonal.begin());
-    matrix.ExtractDiagonalCopy(view);
+    if (values != nullptr)
+      for (unsigned int i = 0; i < diagonal_places.size(); ++i)
+        diagonal.local_element(i) = values[diagonal_places[i]];
+    else
+      {
+        const auto   &matrix = trilinos->matrix.trilinos_matrix();
+        Epetra_Vector view(View, matrix.RowMap(), diagonal.begin());
+        matrix.ExtractDiagonalCopy(view);
+      }
   }
 
   void
   SparseMatrix::set_diagonal(const Vector &diagonal)
   {
-    // deal.II sets entries one by one.
-    auto &matrix =
-      const_cast<Epetra_CrsMatrix &>(trilinos->matrix.trilinos_matrix());
-    matrix.ReplaceDiagonalValues(Epetra_Vector(
-      Copy, matrix.RowMap(), const_cast<double *>(diagonal.begin())));
+    if (values != nullptr)
+      for (unsigned int i = 0; i < diagonal_places.size(); ++i)
+        values[diagonal_places[i]] = diagonal.local_element(i);
+    else
+      {
+        // deal.II sets entries one by one.
+        auto &matrix =
+          const_cast<Epetra_CrsMatrix &>(trilinos->matrix.trilinos_matrix());
+        matrix.ReplaceDiagonalValues(Epetra_Vector(
+          Copy, matrix.RowMap(), const_cast<double *>(diagonal.begin())));
+      }
   }
 
   void
@@ -375,6 +389,7 @@ namespace impm
                                           D.get_mpi_communicator());
     std::copy(D.begin(), D.end(), scaling.begin());
     ++n_places;
+    values = nullptr;
     A.trilinos->matrix.mmult(trilinos->matrix, B.trilinos->matrix, scaling);
   }
 

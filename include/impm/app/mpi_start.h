@@ -8,9 +8,8 @@ namespace impm
   is_started_by_mpi();
 
   /**
-   * Lets Open MPI leave out what one process alone does not need: the daemon
-   * that it would start, and the search for networks. What the environment
-   * asks for goes before.
+   * Lets Open MPI leave out what one process alone does not need: the search
+   * for networks. What the environment asks for goes before.
    */
   void
   prepare_mpi_for_one_process();

@@ -133,8 +133,9 @@ namespace impm
     std::size_t                   n_places_of_blocks = 0;
     static constexpr unsigned int no_place           = -1;
 
-    double                   *values = nullptr; ///< of the matrix
-    std::vector<unsigned int> row_lengths;      ///< by owned node with unknowns
+    double *values = nullptr; ///< of the matrix, unless it is a product
+    std::vector<unsigned int> diagonal_places; ///< by owned row
+    std::vector<unsigned int> row_lengths;     ///< by owned node with unknowns
     RemoteRows                remote_rows;
     /** First unknowns of nodes of other ranks in rows of this one. */
     std::vector<Unknowns::Number> remote_columns;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <experimental/simd>
+
 namespace impm
 {
   using namespace dealii;
@@ -87,66 +89,93 @@ namespace impm
       }
   }
 
+  namespace
+  {
+    /** What is computed with in one instruction; lists are filled up with zeros
+     * to a multiple. */
+    constexpr unsigned int lanes = 4;
+    namespace stdx               = std::experimental;
+    using Lanes = stdx::simd<double, stdx::simd_abi::deduce_t<double, lanes>>;
+
+    constexpr unsigned int
+    filled_up(const unsigned int n)
+    {
+      return (n + lanes - 1) / lanes * lanes;
+    }
+
+    inline Lanes
+    load(const double *list)
+    {
+      return Lanes(list, stdx::element_aligned);
+    }
+  } // namespace
+
   template <int dim>
   void
-  InternalForces<dim>::place_on_patch(const unsigned int point) const
+  InternalForces<dim>::place_on_patch(const unsigned int point,
+                                      const unsigned int n) const
   {
     constexpr unsigned int n_nodes = Footprints<dim>::n_nodes;
-    std::fill(slopes.begin(), slopes.end(), 0.);
-    std::fill(shares.begin(), shares.end(), 0.);
-    touched.clear();
+    slopes.assign(dim * n, 0.);
+    hoops.assign(axisymmetric ? n : 0, 0.);
     for (unsigned int k = prints.first[point]; k < prints.first[point + 1]; ++k)
-      for (unsigned int v = 0; v < n_nodes; ++v)
-        {
-          const unsigned int e = prints.entries[k];
-          const unsigned int m = prints.place[e * n_nodes + v];
-          if (std::find(touched.begin(), touched.end(), m) == touched.end())
-            touched.push_back(m);
-          shares[m] += prints.value(e)[v];
+      {
+        const unsigned int  e        = prints.entries[k];
+        const unsigned int *place    = &prints.place[e * n_nodes];
+        const double       *gradient = prints.gradient(e);
+        for (unsigned int v = 0; v < n_nodes; ++v)
           for (unsigned int d = 0; d < dim; ++d)
-            slopes[dim * m + d] += prints.gradient(e)[dim * v + d];
-        }
+            slopes[n * d + place[v]] += gradient[dim * v + d];
+        for (unsigned int v = 0; axisymmetric && v < n_nodes; ++v)
+          hoops[place[v]] += prints.value(e)[v] * prints.inverse_radius[point];
+      }
   }
 
   template <int dim>
-  template <typename Size, typename Places>
   void
-  InternalForces<dim>::add_point(const unsigned int  point,
-                                 const Size          n_point_nodes,
-                                 const Places       &places,
-                                 const double       *slope,
-                                 const double       *share,
-                                 FullMatrix<double> &matrix) const
+  InternalForces<dim>::add_point(const unsigned int point,
+                                 const unsigned int n) const
   {
-    const double *A = response.tangent(point);
-    const double  inverse_radius =
-      axisymmetric ? prints.inverse_radius[point] : 0.;
-    // rows of A B: one per value of a gradient, one column per unknown
-    for (unsigned int m = 0; m < n_point_nodes; ++m)
-      for (unsigned int c = 0; c < dim; ++c)
-        {
-          typename Kinematics<dim>::List AB;
-          for (unsigned int a = 0; a < n_gradients; ++a)
-            {
-              double sum = 0;
-              for (unsigned int d = 0; d < dim; ++d)
-                sum += A[a * n_gradients + dim * c + d] * slope[dim * m + d];
-              if (axisymmetric && c == 0)
-                sum +=
-                  A[a * n_gradients + dim * dim] * share[m] * inverse_radius;
-              AB[a] = sum;
-            }
-          for (unsigned int l = 0; l < n_point_nodes; ++l)
-            for (unsigned int b = 0; b < dim; ++b)
+    constexpr unsigned int n_values = Kinematics<dim>::max_size;
+    constexpr unsigned int n_list   = filled_up(n_values);
+    // columns of A, one per value of a gradient
+    std::array<std::array<double, n_list>, n_values> A{};
+    const double *tangent = response.tangent(point);
+    for (unsigned int a = 0; a < n_gradients; ++a)
+      for (unsigned int b = 0; b < n_gradients; ++b)
+        A[b][a] = tangent[a * n_gradients + b];
+
+    double *sum = sums.data();
+    for (unsigned int m = 0; m < n; ++m, sum += dim * dim * n)
+      {
+        bool touches = axisymmetric && hoops[m] != 0;
+        for (unsigned int d = 0; d < dim; ++d)
+          touches = touches || slopes[n * d + m] != 0;
+        for (unsigned int c = 0; c < dim && touches; ++c)
+          {
+            std::array<double, n_list> AB; // a column of it
+            for (unsigned int a = 0; a < n_list; a += lanes)
               {
-                double sum = 0;
-                for (unsigned int d = 0; d < dim; ++d)
-                  sum += slope[dim * l + d] * AB[dim * b + d];
-                if (axisymmetric && b == 0)
-                  sum += share[l] * inverse_radius * AB[dim * dim];
-                matrix(dim * places[l] + b, dim * places[m] + c) += sum;
+                Lanes part = slopes[m] * load(&A[dim * c][a]);
+                for (unsigned int d = 1; d < dim; ++d)
+                  part += slopes[n * d + m] * load(&A[dim * c + d][a]);
+                if (axisymmetric && c == 0)
+                  part += hoops[m] * load(&A[dim * dim][a]);
+                part.copy_to(&AB[a], stdx::element_aligned);
               }
-        }
+            for (unsigned int b = 0; b < dim; ++b)
+              for (unsigned int l = 0; l < n; l += lanes)
+                {
+                  double *place = sum + (c * dim + b) * n + l;
+                  Lanes   part  = load(place);
+                  for (unsigned int d = 0; d < dim; ++d)
+                    part += AB[dim * b + d] * load(&slopes[n * d + l]);
+                  if (axisymmetric && b == 0)
+                    part += AB[dim * dim] * load(&hoops[l]);
+                  part.copy_to(place, stdx::element_aligned);
+                }
+          }
+      }
   }
 
   template <int dim>
@@ -159,27 +188,28 @@ namespace impm
     if (!average.includes(first))
       return;
     // F-bar: nodal forces of the mean dilation and of what it does.
-    const unsigned int     n = matrix.m();
+    const unsigned int     n        = matrix.m();
+    const unsigned int     n_filled = filled_up(n / dim);
     dealii::Vector<double> dilation(n), answer(n);
     for (unsigned int i = patch.begin_points; i < patch.end_points; ++i)
       {
         const unsigned int p = prints.patch_points[i];
         const double      *m = &average.mean[p * n_gradients];
         const double      *b = &average.coupling[p * n_gradients];
-        place_on_patch(p);
-        for (unsigned int l = 0; l < shares.size(); ++l)
+        place_on_patch(p, n_filled);
+        for (unsigned int l = 0; l < n / dim; ++l)
           {
             for (unsigned int c = 0; c < dim; ++c)
               for (unsigned int d = 0; d < dim; ++d)
                 {
-                  dilation[dim * l + c] += m[dim * c + d] * slopes[dim * l + d];
-                  answer[dim * l + c] += b[dim * c + d] * slopes[dim * l + d];
+                  const double slope = slopes[n_filled * d + l];
+                  dilation[dim * l + c] += m[dim * c + d] * slope;
+                  answer[dim * l + c] += b[dim * c + d] * slope;
                 }
             if (axisymmetric)
               {
-                const double share = shares[l] * prints.inverse_radius[p];
-                dilation[dim * l] += m[dim * dim] * share;
-                answer[dim * l] += b[dim * dim] * share;
+                dilation[dim * l] += m[dim * dim] * hoops[l];
+                answer[dim * l] += b[dim * dim] * hoops[l];
               }
           }
       }
@@ -195,44 +225,21 @@ namespace impm
   InternalForces<dim>::patch_matrix(const Patch        &patch,
                                     FullMatrix<double> &matrix) const
   {
-    const unsigned int n = patch.end_nodes - patch.begin_nodes;
-    matrix.reinit(dim * n, dim * n);
-    slopes.resize(dim * n);
-    shares.resize(n);
-    // The most frequent number of nodes deserves loops that unroll.
-    constexpr unsigned int n_nodes = Footprints<dim>::n_nodes;
-    const std::integral_constant<unsigned int, n_nodes> n_of_a_cell;
+    const unsigned int n        = patch.end_nodes - patch.begin_nodes;
+    const unsigned int n_filled = filled_up(n);
+    sums.assign(dim * dim * n_filled * n_filled, 0.);
     for (unsigned int i = patch.begin_points; i < patch.end_points; ++i)
       {
-        const unsigned int p     = prints.patch_points[i];
-        const unsigned int begin = prints.first[p];
-        if (prints.first[p + 1] == begin + 1)
-          {
-            const unsigned int e = prints.entries[begin];
-            add_point(p,
-                      n_of_a_cell,
-                      &prints.place[e * n_nodes],
-                      prints.gradient(e),
-                      prints.value(e),
-                      matrix);
-            continue;
-          }
-        place_on_patch(p);
-        point_slopes.clear();
-        point_shares.clear();
-        for (const unsigned int m : touched)
-          {
-            point_shares.push_back(shares[m]);
-            for (unsigned int d = 0; d < dim; ++d)
-              point_slopes.push_back(slopes[dim * m + d]);
-          }
-        add_point(p,
-                  static_cast<unsigned int>(touched.size()),
-                  touched.data(),
-                  point_slopes.data(),
-                  point_shares.data(),
-                  matrix);
+        const unsigned int p = prints.patch_points[i];
+        place_on_patch(p, n_filled);
+        add_point(p, n_filled);
       }
+    matrix.reinit(dim * n, dim * n, true);
+    const double *sum = sums.data();
+    for (unsigned int j = 0; j < dim * n; ++j)
+      for (unsigned int b = 0; b < dim; ++b, sum += n_filled)
+        for (unsigned int l = 0; l < n; ++l)
+          matrix(dim * l + b, j) = sum[l];
     add_coupling(patch, matrix);
   }
 

@@ -85,21 +85,14 @@ namespace impm
     void
     patch_matrix(const Patch &patch, dealii::FullMatrix<double> &matrix) const;
 
-    /** Fills `slopes` and `shares` for a point on all nodes of its patch, and
-     * `touched` with the nodes among them that it has to do with. */
+    /** Fills `slopes` and `hoops` for a point on all nodes of its patch, whose
+     * number is filled up. */
     void
-    place_on_patch(unsigned int point) const;
+    place_on_patch(unsigned int point, unsigned int n) const;
 
-    /** What a point adds to the matrix of its patch, at the places in it that
-     * its nodes have, with their slopes and shares. */
-    template <typename Size, typename Places>
+    /** Adds B^T A B of such a point to `sums`. */
     void
-    add_point(unsigned int                point,
-              Size                        n_point_nodes,
-              const Places               &places,
-              const double               *slope,
-              const double               *share,
-              dealii::FullMatrix<double> &matrix) const;
+    add_point(unsigned int point, unsigned int n) const;
 
     void
     add_coupling(const Patch &patch, dealii::FullMatrix<double> &matrix) const;
@@ -111,8 +104,11 @@ namespace impm
     const double           extent;
 
     mutable std::vector<double> gradient_changes, stress_changes;
-    mutable std::vector<double> slopes, shares, point_slopes, point_shares;
-    mutable std::vector<unsigned int> touched;
+    // Of a point on its patch: d N_l / d x_d at [d n + l] (1/m), N_l / r.
+    mutable std::vector<double> slopes, hoops;
+    /** The matrix of a patch: row (l, b), column (m, c) at
+     * [((m dim + c) dim + b) n + l], with n nodes filled up. */
+    mutable std::vector<double> sums;
   };
 } // namespace impm
 

@@ -106,6 +106,38 @@ TEST(NewtonSolverMpi, IterativeSolversFindTheSameState)
 }
 
 
+// Nodes without material are no unknowns: a domain of ten times the area takes
+// no more iterations to the same state.
+TEST(NewtonSolverMpi, EmptyCellsCostNoIterations)
+{
+  const auto solve = [](const std::string &lower,
+                        const std::string &upper,
+                        const std::string &cells) {
+    Model<2>   model(block_scene("plane strain"),
+                   {"Grid/Lower corner=" + lower,
+                      "Grid/Upper corner=" + upper,
+                      "Grid/Cells=" + cells,
+                      "Boundary conditions/bottom/Type=fixed",
+                      "Loads/Body force=0; -0.05",
+                      "Solver/Linear solver=CG",
+                      "Solver/Newton tolerance=1e-10"});
+    auto       u      = model.vector();
+    const auto result = model.solve(u);
+    EXPECT_TRUE(result.converged) << result.failure;
+    EXPECT_EQ(model.counts.solver_fallbacks, 0u);
+    const auto unknowns = model.balance().make_unknowns();
+    // 41 x 41 nodes, whose lowest are held
+    EXPECT_EQ(unknowns.size(), 2u * 41 * 40);
+    return std::make_pair(result.linear_iterations, u.l2_norm());
+  };
+  const auto near = solve("-0.25, 0", "1.25, 1.25", "60, 50");
+  const auto far  = solve("-1.5, 0", "2.5, 4", "160, 160");
+  EXPECT_GT(near.first, 10u); // several levels
+  EXPECT_NEAR(far.first, near.first, 3);
+  EXPECT_NEAR(far.second, near.second, 1e-8 * near.second);
+}
+
+
 // Where a tangent is kept and corrected, the same state is found, with fewer
 // tangents than iterations.
 TEST(NewtonSolverMpi, BfgsFindsTheSameState)

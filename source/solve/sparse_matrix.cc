@@ -1,37 +1,21 @@
-#include <deal.II/lac/dynamic_sparsity_pattern.h>
-#include <deal.II/lac/solver_control.h>
-#include <deal.II/lac/trilinos_precondition.h>
-#include <deal.II/lac/trilinos_solver.h>
-#include <deal.II/lac/trilinos_sparse_matrix.h>
-
-#include <impm/base/exceptions.h>
-#include <impm/solve/sparse_matrix.h>
+#include <impm/solve/trilinos_matrix.h>
 
 #include <Epetra_CrsGraph.h>
 #include <Epetra_Map.h>
 #include <Epetra_MpiComm.h>
 #include <Epetra_Vector.h>
-#include <Teuchos_ParameterList.hpp>
 
 #include <algorithm>
-#include <filesystem>
-#include <iostream>
-#include <sstream>
 
 namespace impm
 {
   using namespace dealii;
 
-  struct SparseMatrix::Trilinos
-  {
-    TrilinosWrappers::SparseMatrix matrix;
-  };
-
   SparseMatrix::SparseMatrix(const Unknowns &unknowns)
     : unknowns(unknowns)
+    , trilinos(std::make_unique<Trilinos>())
     , is_parallel(Utilities::MPI::n_mpi_processes(
                     unknowns.partitioner->get_mpi_communicator()) > 1)
-    , trilinos(std::make_unique<Trilinos>())
   {}
 
   SparseMatrix::~SparseMatrix() = default;
@@ -391,106 +375,5 @@ namespace impm
     ++n_places;
     values = nullptr;
     A.trilinos->matrix.mmult(trilinos->matrix, B.trilinos->matrix, scaling);
-  }
-
-  namespace
-  {
-    [[noreturn]] void
-    blame_matrix()
-    {
-      throw LinearizationError(
-        "the linear system is singular (a body that nothing holds, or with too few "
-        "points for its grid?)");
-    }
-
-    struct Amg
-    {
-      TrilinosWrappers::PreconditionAMG preconditioner;
-      std::vector<double>               modes; ///< whose address ML keeps
-    };
-
-    struct Factors
-    {
-      SolverControl                  control;
-      TrilinosWrappers::SolverDirect solver{control};
-    };
-  } // namespace
-
-  LinearMap
-  make_amg(const SparseMatrix                     &matrix,
-           const std::vector<std::vector<double>> &modes)
-  {
-    const auto amg = std::make_shared<Amg>();
-    for (const auto &mode : modes)
-      amg->modes.insert(amg->modes.end(), mode.begin(), mode.end());
-    amg->modes.resize(std::max<std::size_t>(1, amg->modes.size()));
-
-    Teuchos::ParameterList                            parameters;
-    TrilinosWrappers::PreconditionAMG::AdditionalData data;
-    // By nodes; a larger one costs iterations on even grids, a smaller one on
-    // those that are stretched or adapted.
-    data.aggregation_threshold = 0.01;
-    std::unique_ptr<Epetra_MultiVector> unused;
-    const auto &trilinos_matrix = matrix.trilinos->matrix;
-    data.set_parameters(parameters, unused, trilinos_matrix);
-    const unsigned int n_components = matrix.unknowns.n_components;
-    parameters.set("PDE equations", static_cast<int>(n_components));
-    // To factorize more is dear in space, not in the plane.
-    parameters.set("coarse: max size", n_components == 3 ? 500 : 2000);
-    parameters.set("null space: type", "pre-computed");
-    parameters.set("null space: dimension", static_cast<int>(modes.size()));
-    parameters.set("null space: vectors", amg->modes.data());
-    // Where the coarsest matrix is singular, ML says so on the terminal, writes
-    // it to a file and goes on without it; no parameter turns this off.
-    const std::string  file      = "amesos-failure.dat";
-    const bool         was_there = std::filesystem::exists(file);
-    std::ostringstream said;
-    const auto         screen = std::cout.rdbuf(said.rdbuf());
-    bool               failed = false;
-    try
-      {
-        amg->preconditioner.initialize(trilinos_matrix, parameters);
-      }
-    catch (...)
-      {
-        failed = true;
-      }
-    std::cout.rdbuf(screen);
-    failed = failed || said.str().find("failed") != std::string::npos;
-    if (failed && !was_there)
-      {
-        std::error_code none;
-        std::filesystem::remove(file, none);
-      }
-    if (Utilities::MPI::logical_or(failed,
-                                   trilinos_matrix.get_mpi_communicator()))
-      blame_matrix();
-    return {[amg](Vector &dst, const Vector &src) {
-      amg->preconditioner.vmult(dst, src);
-    }};
-  }
-
-  LinearMap
-  factorize(const SparseMatrix &matrix)
-  {
-    const auto factors = std::make_shared<Factors>();
-    try
-      {
-        factors->solver.initialize(matrix.trilinos->matrix);
-      }
-    catch (const ExceptionBase &)
-      {
-        blame_matrix();
-      }
-    return {[factors](Vector &x, const Vector &b) {
-      try
-        {
-          factors->solver.solve(x, b);
-        }
-      catch (const ExceptionBase &)
-        {
-          blame_matrix();
-        }
-    }};
   }
 } // namespace impm

@@ -1,7 +1,7 @@
 #ifndef impm_solve_bfgs_h
 #define impm_solve_bfgs_h
 
-#include <impm/solve/sparse_matrix.h>
+#include <impm/solve/inverses.h>
 
 #include <deque>
 

@@ -5,6 +5,7 @@
 
 #include <impm/input/sections/solver.h>
 #include <impm/solve/difference_quotient.h>
+#include <impm/solve/inverses.h>
 
 namespace impm
 {

@@ -7,7 +7,6 @@
 
 #include <impm/solve/remote_rows.h>
 
-#include <functional>
 #include <memory>
 #include <vector>
 
@@ -15,8 +14,7 @@ namespace impm
 {
   /**
    * The distributed matrix of a linear system, filled block by block. This and
-   * what solves with it is all that the program knows of Trilinos, and
-   * solve/sparse_matrix.cc is the one file that does.
+   * what solves with it (inverses.h) is all that the program knows of Trilinos.
    *
    * Blocks are of whole nodes. Where each of them goes is found once: those who
    * fill the matrix must give the blocks in the order in which they gave them
@@ -77,7 +75,6 @@ namespace impm
     multiply(const SparseMatrix &A, const Vector &D, const SparseMatrix &B);
 
     const Unknowns &unknowns;
-    const bool      is_parallel;
 
     struct Trilinos;
     const std::unique_ptr<Trilinos> trilinos;
@@ -120,6 +117,7 @@ namespace impm
     void
     find_places();
 
+    const bool                         is_parallel;
     unsigned int                       n_places = 0;
     std::vector<Block>                 blocks;
     std::vector<unsigned int>          block_nodes;
@@ -140,31 +138,6 @@ namespace impm
     /** First unknowns of nodes of other ranks in rows of this one. */
     std::vector<Unknowns::Number> remote_columns;
   };
-
-  /** What deal.II's solvers know of a matrix, a preconditioner, an inverse. */
-  struct LinearMap
-  {
-    std::function<void(Vector &dst, const Vector &src)> vmult;
-  };
-
-  /**
-   * Smoothed aggregation (ML) of nodes for elastic bodies; `modes` are what
-   * costs hardly any energy, by owned compact index. The matrix has to stay
-   * where it is. When it gets other entries, those are smoothed with, while the
-   * coarser levels stay as they were. Throws LinearizationError, on every rank
-   * alike, when the matrix is singular. Collective.
-   */
-  LinearMap
-  make_amg(const SparseMatrix                     &matrix,
-           const std::vector<std::vector<double>> &modes);
-
-  /**
-   * The inverse of a matrix that stays as it is, by factorization (Amesos,
-   * KLU). Throws LinearizationError as make_amg() does, when applied, too.
-   * Collective.
-   */
-  LinearMap
-  factorize(const SparseMatrix &matrix);
 } // namespace impm
 
 #endif

@@ -53,17 +53,17 @@ namespace impm
                                                     communicator);
     if (any_hanging)
       masters.resize(locally_relevant_dofs.n_elements() / dim);
+    // What holds of one component of a node holds of all.
     for (const auto &line : hanging_nodes.get_lines())
       {
-        HangingValue value{partitioner->global_to_local(line.index), {}};
+        const unsigned int index = partitioner->global_to_local(line.index);
+        if (index % dim != 0)
+          continue;
         for (const auto &[master, weight] : line.entries)
-          value.masters.emplace_back(partitioner->global_to_local(master),
-                                     weight);
-        if (value.index % dim == 0)
-          for (const auto &[master, weight] : value.masters)
-            masters[value.index / dim].emplace_back(master / dim, weight);
+          masters[index / dim].emplace_back(
+            partitioner->global_to_local(master) / dim, weight);
         if (owned.is_element(line.index))
-          hanging.push_back(std::move(value));
+          hanging.push_back(index / dim);
       }
   }
 
@@ -111,13 +111,14 @@ namespace impm
     vector.update_ghost_values();
     if (!numbering->any_hanging)
       return;
-    for (const auto &value : numbering->hanging)
-      {
-        double sum = 0;
-        for (const auto &[master, weight] : value.masters)
-          sum += weight * vector.local_element(master);
-        vector.local_element(value.index) = sum;
-      }
+    for (const unsigned int node : numbering->hanging)
+      for (unsigned int c = 0; c < dim; ++c)
+        {
+          double sum = 0;
+          for (const auto &[master, weight] : numbering->masters[node])
+            sum += weight * vector.local_element(dim * master + c);
+          vector.local_element(dim * node + c) = sum;
+        }
     vector.update_ghost_values();
   }
 
@@ -128,13 +129,14 @@ namespace impm
     vector.zero_out_ghost_values();
     if (!numbering->any_hanging)
       return;
-    for (const auto &value : numbering->hanging)
-      {
-        for (const auto &[master, weight] : value.masters)
-          vector.local_element(master) +=
-            weight * vector.local_element(value.index);
-        vector.local_element(value.index) = 0;
-      }
+    for (const unsigned int node : numbering->hanging)
+      for (unsigned int c = 0; c < dim; ++c)
+        {
+          double &value = vector.local_element(dim * node + c);
+          for (const auto &[master, weight] : numbering->masters[node])
+            vector.local_element(dim * master + c) += weight * value;
+          value = 0;
+        }
     vector.compress(VectorOperation::add);
   }
 

@@ -65,24 +65,17 @@ namespace impm
     carriers.compress(VectorOperation::max);
     carriers.update_ghost_values();
 
-    const auto &hanging_nodes = discretization.numbering->hanging_nodes;
-    const auto &partitioner   = *discretization.numbering->partitioner;
+    const auto &masters = discretization.numbering->masters;
     for (unsigned int i = 0; i < is_constrained.size(); ++i)
       {
-        const bool used = support.local_element(i) > 0;
-        const bool held = carriers.local_element(i) > 0;
-        if (discretization.numbering->any_hanging &&
-            hanging_nodes.is_constrained(partitioner.local_to_global(i)))
-          is_constrained[i] = true;
-        else if (!used)
-          is_constrained[i] = true;
-        else if (held)
-          {
-            is_constrained[i] = true;
-            carrier[i] =
-              static_cast<unsigned int>(carriers.local_element(i)) - 1;
-            increment[i] = prescribed(i, time, dt);
-          }
+        const bool hangs  = !masters.empty() && !masters[i / dim].empty();
+        const bool used   = support.local_element(i) > 0;
+        const bool held   = carriers.local_element(i) > 0;
+        is_constrained[i] = hangs || !used || held;
+        if (hangs || !used || !held)
+          continue;
+        carrier[i]   = static_cast<unsigned int>(carriers.local_element(i)) - 1;
+        increment[i] = prescribed(i, time, dt);
       }
   }
 

@@ -25,8 +25,10 @@ namespace impm
   {
     for (Vector *vector : {&solution, &right_side, &inverse_diagonal})
       unknowns.initialize(*vector);
-    for (Vector *vector : {&full_src, &full_dst})
-      system.initialize(*vector);
+    if (spec.tangent != TangentKind::matrix ||
+        spec.preconditioner == PreconditionerKind::jacobi)
+      for (Vector *vector : {&full_src, &full_dst})
+        system.initialize(*vector);
   }
 
   NonlinearSystem::Evaluation

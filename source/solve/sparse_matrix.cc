@@ -11,6 +11,16 @@ namespace impm
 {
   using namespace dealii;
 
+  namespace
+  {
+    /** What Trilinos returns. */
+    void
+    check(const int error)
+    {
+      AssertThrow(error == 0, ExcInternalError());
+    }
+  } // namespace
+
   SparseMatrix::SparseMatrix(const Unknowns &unknowns)
     : unknowns(unknowns)
     , trilinos(std::make_unique<Trilinos>())
@@ -161,10 +171,10 @@ namespace impm
         });
         std::sort(in_row.begin(), in_row.end());
         for (unsigned int c = 0; c < n_components; ++c, ++row)
-          graph.InsertMyIndices(row, lengths[row], in_row.data());
+          check(graph.InsertMyIndices(row, lengths[row], in_row.data()));
       }
-    graph.FillComplete(rows, rows);
-    graph.OptimizeStorage();
+    check(graph.FillComplete(rows, rows));
+    check(graph.OptimizeStorage());
     trilinos->matrix.reinit(Epetra_CrsMatrix(Copy, graph), false);
     find_places();
   }
@@ -188,19 +198,18 @@ namespace impm
     const auto        &partitioner  = *unknowns.partitioner;
     const auto        &matrix       = trilinos->matrix.trilinos_matrix();
     int               *row_starts, *columns;
-    const int          error =
-      matrix.ExtractCrsDataPointers(row_starts, columns, values);
-    AssertThrow(error == 0, ExcInternalError());
+    check(matrix.ExtractCrsDataPointers(row_starts, columns, values));
     row_lengths.resize(unknowns.nodes.size());
     for (unsigned int r = 0; r < row_lengths.size(); ++r)
       row_lengths[r] =
         row_starts[n_components * r + 1] - row_starts[n_components * r];
 
     const auto place_in_row = [&](const unsigned int row, const int column) {
-      return std::lower_bound(columns + row_starts[row],
-                              columns + row_starts[row + 1],
-                              column) -
-             columns;
+      const int *begin = columns + row_starts[row];
+      const int *end   = columns + row_starts[row + 1];
+      const int *found = std::lower_bound(begin, end, column);
+      AssertThrow(found != end && *found == column, ExcInternalError());
+      return found - columns;
     };
     for (unsigned int i = 0; i < unknowns.n_owned(); ++i)
       diagonal_places.push_back(place_in_row(i, i));
@@ -243,8 +252,14 @@ namespace impm
   void
   SparseMatrix::add_block(const Nodes &nodes, FullMatrix<double> &block)
   {
-    const Block &where   = blocks[next_block++];
-    auto        *entries = &block;
+    AssertIndexRange(next_block, blocks.size());
+    const Block &where = blocks[next_block++];
+    Assert(where.any_hangs || std::equal(nodes.begin(),
+                                         nodes.end(),
+                                         block_nodes.begin() + where.begin,
+                                         block_nodes.begin() + where.end),
+           ExcMessage("blocks come in another order than in the pattern"));
+    auto *entries = &block;
     if (where.any_hangs)
       {
         eliminate_hanging(where, nodes, block, eliminated);
@@ -324,6 +339,7 @@ namespace impm
   void
   SparseMatrix::end_blocks()
   {
+    AssertThrow(next_block == blocks.size(), ExcInternalError());
     if (is_parallel)
       remote_rows.exchange_values(values);
   }

@@ -50,17 +50,6 @@ namespace impm
           full.local_element(n_components * node + c);
   }
 
-  std::vector<double>
-  Unknowns::pack(const std::vector<double> &full) const
-  {
-    std::vector<double> compact;
-    compact.reserve(n_owned());
-    for (const unsigned int node : nodes)
-      for (unsigned int c = 0; c < n_components; ++c)
-        compact.push_back(full[n_components * node + c]);
-    return compact;
-  }
-
   void
   Unknowns::unpack(const Vector &compact, Vector &full) const
   {

@@ -46,12 +46,7 @@ namespace impm
 
     std::shared_ptr<const dealii::Utilities::MPI::Partitioner> partitioner;
 
-    struct HangingValue
-    {
-      unsigned int                                 index;
-      std::vector<std::pair<unsigned int, double>> masters;
-    };
-    std::vector<HangingValue> hanging; ///< those that this rank owns
+    std::vector<unsigned int> hanging; ///< nodes that hang and are this rank's
     /** Nodes that a hanging one follows, of every local node, with their
      * weights; an empty list if none hangs. */
     std::vector<std::vector<std::pair<unsigned int, double>>> masters;

@@ -117,12 +117,12 @@ namespace impm
     void
     find_places();
 
-    const bool                         is_parallel;
-    unsigned int                       n_places = 0;
-    std::vector<Block>                 blocks;
-    std::vector<unsigned int>          block_nodes;
-    std::size_t                        next_block = 0;
-    mutable dealii::FullMatrix<double> eliminated;
+    const bool                 is_parallel;
+    unsigned int               n_places = 0;
+    std::vector<Block>         blocks;
+    std::vector<unsigned int>  block_nodes;
+    std::size_t                next_block = 0;
+    dealii::FullMatrix<double> eliminated;
 
     /** For each pair of nodes of a block the place of their first entry in the
      * first of the rows among the values of the matrix, or of those for other

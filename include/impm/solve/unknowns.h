@@ -48,10 +48,6 @@ namespace impm
     void
     pack(const Vector &full, Vector &compact) const;
 
-    /** The same for a list of what this rank owns. */
-    std::vector<double>
-    pack(const std::vector<double> &full) const;
-
     /** Zero where there is no unknown. */
     void
     unpack(const Vector &compact, Vector &full) const;

@@ -277,3 +277,26 @@ TEST(Scene, IsWhatTheFileSays)
   EXPECT_EQ(top.value->value({0.3, 0.2}, 1), -6.);
   EXPECT_EQ(scene.loads.body_force->value({0, 0}, 1), -9.81);
 }
+
+
+// Where a load is evaluated once, or at every point and instant, is told by
+// the names in it.
+TEST(Scene, ExpressionsTellWhatTheyDependOn)
+{
+  const auto names = [](const std::string &force, const std::string &words) {
+    const auto scene =
+      scene_from<2>(block_scene("plane strain"), {"Loads/Body force=" + force});
+    return names_any_of(*scene.loads.body_force, words);
+  };
+  const std::string place = "x|y|z|rand|rand_seed", time = "t|rand|rand_seed";
+  EXPECT_FALSE(names("0; -9.81", place));
+  EXPECT_FALSE(names("0; -1e1*sqrt(2)", time));
+  EXPECT_FALSE(names("0; -10*t", place));
+  EXPECT_TRUE(names("0; -10*t", time));
+  EXPECT_TRUE(names("y^2; 0", place));
+  EXPECT_TRUE(names("0; 2*(x-1)", place));
+  EXPECT_FALSE(names("exp(1); max(1, tan(1))", place));
+  EXPECT_FALSE(names("exp(1); max(1, tan(1))", time));
+  EXPECT_TRUE(names("0; rand()", place));
+  EXPECT_TRUE(names("0; rand()", time));
+}

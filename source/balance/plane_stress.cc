@@ -18,7 +18,7 @@ namespace impm
   {
     // with the thickness as the hoop of axisymmetry
     const Kinematics<2>    thick(true);
-    Kinematics<2>::Matrix  space;
+    Kinematics<2>::Matrix<>  space;
     constexpr unsigned int n = 5, h = n - 1;
     constexpr double       infinity = std::numeric_limits<double>::infinity();
     const auto             form     = material.form();

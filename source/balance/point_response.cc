@@ -33,101 +33,122 @@ namespace impm
   {}
 
   template <int dim>
-  bool
-  PointResponse<dim>::evaluate_law(Batch &batch, const bool with_tangent)
+  template <typename Number>
+  unsigned int
+  PointResponse<dim>::evaluate_batch(const unsigned int first,
+                                     const bool         with_tangent,
+                                     Batch<Number>     &batch)
   {
-    batch.law = &points.material(batch.first);
-    const unsigned int most =
-      std::min(Batch::max_size, points.size() - batch.first);
-    unsigned int n = 0;
-    for (; n < most && &points.material(batch.first + n) == batch.law; ++n)
-      {
-        const unsigned int p      = batch.first + n;
-        const double      *fields = points.fields(p);
-        batch.start[n] =
-          points.layout.load_tensor(fields + points.offset_deformation);
-        batch.history[n]       = fields + points.offset_history;
-        batch.trial_history[n] = histories.data() + p * points.history_size();
-        batch.increment[n]     = increment(p);
-      }
-    batch.size = n;
-    if (is_plane_stress)
-      {
-        for (unsigned int i = 0; i < n; ++i)
-          {
-            if (!evaluate_plane_stress(*batch.law,
-                                       batch.start[i],
-                                       dt,
-                                       batch.history[i],
-                                       batch.trial_history[i],
-                                       batch.increment[i],
-                                       batch.response[i],
-                                       with_tangent ? batch.spatial[i].data() :
-                                                      nullptr,
-                                       n_evaluations))
-              return false;
-            thickening[batch.first + i] = batch.increment[i][2][2];
-          }
-        return true;
-      }
-    for (unsigned int i = 0; i < n; ++i)
-      batch.total[i] = batch.increment[i] * batch.start[i];
-    if (!batch.law->evaluate({n,
-                              batch.increment.data(),
-                              batch.total.data(),
+    batch.law   = &points.material(first);
+    batch.first = first;
+    batch.size  = 1;
+    while (batch.size < n_lanes_of<Number> &&
+           first + batch.size < points.size() &&
+           &points.material(first + batch.size) == batch.law)
+      ++batch.size;
+
+    batch.load(gradients, kinematics.size, batch.gradient.data());
+    batch.increment = kinematics.deformation(batch.gradient.data());
+    if (average.includes(first))
+      average.dilate(batch.gather(
+                       [&](const unsigned int p) { return average.factor(p); }),
+                     batch.increment);
+    if (!evaluate_law(batch, with_tangent))
+      return 0;
+    carry_back(batch, with_tangent);
+    return batch.size;
+  }
+
+  template <int dim>
+  bool
+  PointResponse<dim>::evaluate_law(Batch<Lanes> &batch, const bool with_tangent)
+  {
+    const auto start =
+      points.layout.load_tensor(batch.template places<const double>(
+        [&](auto p) { return points.fields(p) + points.offset_deformation; }));
+    batch.total = batch.increment * start;
+    if (!batch.law->evaluate({batch.increment,
+                              batch.total,
                               dt,
-                              batch.history.data(),
-                              batch.trial_history.data()},
+                              batch.template places<const double>([&](auto p) {
+                                return points.fields(p) + points.offset_history;
+                              }),
+                              batch.template places<double>([&](auto p) {
+                                return histories.data() +
+                                       p * points.history_size();
+                              })},
                              with_tangent,
-                             batch.response.data()))
+                             batch.response))
       return false;
     if (with_tangent)
-      {
-        const auto form = batch.law->form();
-        for (unsigned int i = 0; i < n; ++i)
-          kinematics.spatial_tangent(batch.response[i],
-                                     form,
-                                     batch.spatial[i].data());
-      }
+      kinematics.spatial_tangent(batch.response,
+                                 batch.law->form(),
+                                 batch.spatial.data());
     return true;
   }
 
   template <int dim>
+  bool
+  PointResponse<dim>::evaluate_law(Batch<double> &batch,
+                                   const bool     with_tangent)
+  {
+    const double *fields = points.fields(batch.first);
+    const bool    fine   = evaluate_plane_stress(
+      *batch.law,
+      points.layout.load_tensor(fields + points.offset_deformation),
+      dt,
+      fields + points.offset_history,
+      histories.data() + batch.first * points.history_size(),
+      batch.increment,
+      batch.response,
+      with_tangent ? batch.spatial.data() : nullptr,
+      n_evaluations);
+    thickening[batch.first] = batch.increment[2][2];
+    return fine;
+  }
+
+  template <int dim>
+  template <typename Number>
   void
-  PointResponse<dim>::carry_back(Batch &batch, const bool with_tangent)
+  PointResponse<dim>::carry_back(Batch<Number> &batch, const bool with_tangent)
   {
     const unsigned int n_g = kinematics.size;
     const bool linearized  = batch.law->form() == Material::Form::linearized;
-    for (unsigned int i = 0; i < batch.size; ++i)
+    auto      &response    = batch.response;
+    const auto volume      = batch.gather(
+      [&](const unsigned int p) { return points.initial_volume(p); });
+    batch.scatter(volume * response.potential,
+                  [&](const double value, unsigned int) {
+                    potential += value;
+                  });
+    if (n_stress > 0)
       {
-        const unsigned int p        = batch.first + i;
-        const double       volume   = points.initial_volume(p);
-        auto              &response = batch.response[i];
-        double *matrix = with_tangent ? batch.spatial[i].data() : nullptr;
-        potential += volume * response.potential;
-        if (n_stress > 0)
-          {
-            // that of a linearized law counts from the volume at the start
-            const double growth =
-              linearized ? determinant(batch.increment[i]) : 1.;
-            points.layout.store_symmetric(growth * response.kirchhoff_stress,
-                                          &end_stresses[p * n_stress]);
-          }
-        const Tensor<2, 3> inverse =
-          linearized ? Tensor<2, 3>(unit_symmetric_tensor<3>()) :
-                       invert(kinematics.deformation(&gradients[p * n_g]));
-        if (average.includes(p))
-          average.take_out_pressure(p, volume, inverse, response, matrix);
-        kinematics.carry_back(kinematics.list(response.kirchhoff_stress),
-                              inverse,
-                              volume,
-                              &stresses[p * n_g]);
-        if (with_tangent)
-          kinematics.carry_back_tangent(matrix,
-                                        inverse,
-                                        volume,
-                                        &tangents[p * n_g * n_g]);
+        // that of a linearized law counts from the volume at the start
+        auto stress = response.kirchhoff_stress;
+        if (linearized)
+          stress *= Number(determinant(batch.increment));
+        points.layout.store_symmetric(
+          stress, batch.template places<double>([&](const unsigned int p) {
+            return &end_stresses[p * n_stress];
+          }));
       }
+    const Tensor<2, 3, Number> inverse =
+      linearized ? Tensor<2, 3, Number>(unit_symmetric_tensor<3, Number>()) :
+                   invert(kinematics.deformation(batch.gradient.data()));
+    Number *matrix = with_tangent ? batch.spatial.data() : nullptr;
+    if (average.includes(batch.first))
+      average.take_out_pressure(batch, volume, inverse, response, matrix);
+    typename Kinematics<dim>::template List<Number> stress;
+    kinematics.carry_back(kinematics.list(response.kirchhoff_stress),
+                          inverse,
+                          volume,
+                          stress.data());
+    batch.store(stress.data(), stresses, n_g);
+    if (!with_tangent)
+      return;
+    typename Kinematics<dim>::template Matrix<Number> tangent;
+    kinematics.carry_back_tangent(matrix, inverse, volume, tangent.data());
+    batch.store(tangent.data(), tangents, n_g * n_g);
   }
 
   template <int dim>
@@ -140,13 +161,24 @@ namespace impm
       return false;
     if (with_tangent) // explicit steps never ask for it
       tangents.resize(points.size() * kinematics.size * kinematics.size);
-    Batch batch;
-    for (batch.first = 0; batch.first < points.size();
-         batch.first += batch.size)
-      {
-        if (!evaluate_law(batch, with_tangent))
+    const auto evaluate_all = [&](auto &batch) {
+      unsigned int size = 0;
+      for (unsigned int p = 0; p < points.size(); p += size)
+        if ((size = evaluate_batch(p, with_tangent, batch)) == 0)
           return false;
-        carry_back(batch, with_tangent);
+      return true;
+    };
+    if (is_plane_stress)
+      {
+        Batch<double> batch;
+        if (!evaluate_all(batch))
+          return false;
+      }
+    else
+      {
+        Batch<Lanes> batch;
+        if (!evaluate_all(batch))
+          return false;
       }
     average.share_pressure(gradients, with_tangent, stresses, tangents);
     return true;

@@ -49,6 +49,19 @@ namespace impm
   }
 
   template <int dim>
+  PointBatch<Lanes>
+  VolumeAverage<dim>::next_batch(unsigned int first) const
+  {
+    const unsigned int n = groups.size();
+    while (first < n && !includes(first))
+      ++first;
+    unsigned int size = 0;
+    while (size < n_lanes && first + size < n && includes(first + size))
+      ++size;
+    return {first, size};
+  }
+
+  template <int dim>
   bool
   VolumeAverage<dim>::measure(const std::vector<double> &gradients,
                               const bool                 with_tangent)
@@ -57,55 +70,60 @@ namespace impm
     group_pressure.assign(group_volume.size(), 0.);
     if (with_tangent)
       group_square.assign(group_volume.size(), 0.);
-    for (unsigned int p = 0; p < groups.size(); ++p)
-      if (includes(p))
-        {
-          jacobian[p] = determinant(
-            kinematics.deformation(&gradients[p * kinematics.size]));
-          if (!(jacobian[p] > 0))
-            return false;
-          group_change[groups[p]] += start_volume[p] * jacobian[p];
-        }
+    typename Kinematics<dim>::template List<Lanes> gradient;
+    for (auto batch = next_batch(0); batch.size > 0;
+         batch      = next_batch(batch.first + batch.size))
+      {
+             batch.load(gradients, kinematics.size, gradient.data());
+             const Lanes change =
+               determinant(kinematics.deformation(gradient.data()));
+             if (!all_of(change > 0.))
+          return false;
+        batch.scatter(change, [&](const double value, const unsigned int p) {
+          jacobian[p] = value;
+          group_change[groups[p]] += start_volume[p] * value;
+        });
+      }
     return true;
   }
 
   template <int dim>
-  Tensor<2, 3>
-  VolumeAverage<dim>::average(const unsigned int point, Tensor<2, 3> dF) const
+  double
+  VolumeAverage<dim>::factor(const unsigned int point) const
   {
     const unsigned int g = groups[point];
     const double ratio   = group_change[g] / group_volume[g] / jacobian[point];
-    const double factor =
-      kinematics.n_dilating == 2 ? std::sqrt(ratio) : std::cbrt(ratio);
-    for (unsigned int i = 0; i < kinematics.n_dilating; ++i)
-      for (unsigned int j = 0; j < kinematics.n_dilating; ++j)
-        dF[i][j] *= factor;
-    return dF;
+    return kinematics.n_dilating == 2 ? std::sqrt(ratio) : std::cbrt(ratio);
   }
 
   template <int dim>
+  template <typename Number>
   void
-  VolumeAverage<dim>::take_out_pressure(const unsigned int  point,
-                                        const double        volume,
-                                        const Tensor<2, 3> &inverse,
-                                        Material::Response &response,
-                                        double             *matrix)
+  VolumeAverage<dim>::take_out_pressure(
+    const PointBatch<Number>        &batch,
+    const Number                    &volume,
+    const Tensor<2, 3, Number>      &inverse,
+    Material::BasicResponse<Number> &response,
+    Number                          *matrix)
   {
     const unsigned int n_g = kinematics.size;
     const double       n   = kinematics.n_dilating;
     auto              &tau = response.kirchhoff_stress;
-    double             pi  = 0;
+    Number             pi  = 0.;
     for (unsigned int i = 0; i < n; ++i)
       pi += tau[i][i] / n;
-    group_pressure[groups[point]] += volume * pi;
+    batch.scatter(volume * pi, [&](const double value, const unsigned int p) {
+      group_pressure[groups[p]] += value;
+    });
 
     if (matrix != nullptr)
       {
+        using List = typename Kinematics<dim>::template List<Number>;
         // K is `matrix`.
         const auto e = kinematics.list(unit_symmetric_tensor<3>());
         const auto t = kinematics.list(tau);
-        typename Kinematics<dim>::List Ke{};
-        double                         eKe = 0;
+        List       Ke{};
+        Number     eKe = 0.;
         for (unsigned int a = 0; a < n_g; ++a)
           {
             for (unsigned int b = 0; b < n_g; ++b)
@@ -114,14 +132,14 @@ namespace impm
           }
         // A = (1 - ee/n) K (1 - ee/n) - (te + et)/n + pi/n ee + pi X, where
         // g.X.h = tr(g h); then b and c of the class.
-        typename Kinematics<dim>::List b{};
+        List b{};
         for (unsigned int k = 0; k < n_g; ++k)
           {
             for (unsigned int l = 0; l < n_g; ++l)
               matrix[k * n_g + l] += -(Ke[k] * e[l] + e[k] * Ke[l]) / n +
-                                     eKe / (n * n) * e[k] * e[l] -
+                                     eKe / (n * n) * (e[k] * e[l]) -
                                      (t[k] * e[l] + e[k] * t[l]) / n +
-                                     pi / n * e[k] * e[l];
+                                     pi / n * (e[k] * e[l]);
             b[k] = Ke[k] / n - eKe / (n * n) * e[k] + t[k] / n - pi / n * e[k];
           }
         for (unsigned int i = 0; i < dim; ++i)
@@ -129,9 +147,14 @@ namespace impm
             matrix[(dim * i + j) * n_g + dim * j + i] += pi;
         if (kinematics.axisymmetric)
           matrix[n_g * n_g - 1] += pi;
-        kinematics.carry_back(b, inverse, volume, &coupling[point * n_g]);
-        square[point] = volume * (eKe / (n * n) + pi / n - pi);
-        group_square[groups[point]] += square[point];
+        List carried;
+        kinematics.carry_back(b, inverse, volume, carried.data());
+        batch.store(carried.data(), coupling, n_g);
+        batch.scatter(volume * (eKe / (n * n) + pi / n - pi),
+                      [&](const double value, const unsigned int p) {
+                        square[p] = value;
+                        group_square[groups[p]] += value;
+                      });
       }
     for (unsigned int i = 0; i < n; ++i)
       tau[i][i] -= pi;
@@ -144,29 +167,32 @@ namespace impm
                                      std::vector<double>       &stresses,
                                      std::vector<double>       &tangents)
   {
+    using List             = typename Kinematics<dim>::template List<Lanes>;
     const unsigned int n_g = kinematics.size;
-    for (unsigned int p = 0; p < groups.size(); ++p)
+    const auto         e   = kinematics.list(unit_symmetric_tensor<3, Lanes>());
+    List               gradient, m, stress;
+    typename Kinematics<dim>::template Matrix<Lanes> A;
+    for (auto batch = next_batch(0); batch.size > 0;
+         batch      = next_batch(batch.first + batch.size))
       {
-        if (!includes(p))
-          continue;
-        const unsigned int g  = groups[p];
-        const double share    = start_volume[p] * jacobian[p] / group_change[g];
-        const double pressure = group_pressure[g];
-        const auto   inverse =
-          invert(kinematics.deformation(&gradients[p * n_g]));
-        typename Kinematics<dim>::List m;
-        kinematics.carry_back(kinematics.list(unit_symmetric_tensor<3>()),
-                              inverse,
-                              share,
-                              m.data());
-        for (unsigned int a = 0; a < n_g; ++a)
-          stresses[p * n_g + a] += pressure * m[a];
-        if (!with_tangent)
+             const Lanes share    = batch.gather([&](const unsigned int p) {
+          return start_volume[p] * jacobian[p] / group_change[groups[p]];
+        });
+             const Lanes pressure = batch.gather(
+          [&](const unsigned int p) { return group_pressure[groups[p]]; });
+             batch.load(gradients, n_g, gradient.data());
+             const auto inverse = invert(kinematics.deformation(gradient.data()));
+             kinematics.carry_back(e, inverse, share, m.data());
+             batch.load(stresses, n_g, stress.data());
+             for (unsigned int a = 0; a < n_g; ++a)
+          stress[a] += pressure * m[a];
+        batch.store(stress.data(), stresses, n_g);
+             if (!with_tangent)
           continue;
         // From the second derivative of ln theta: share (tr g tr h - tr(g h)).
-        std::copy_n(m.begin(), n_g, &mean[p * n_g]);
-        double *A = &tangents[p * n_g * n_g];
-        for (unsigned int a = 0; a < n_g; ++a)
+             batch.store(m.data(), mean, n_g);
+             batch.load(tangents, n_g * n_g, A.data());
+             for (unsigned int a = 0; a < n_g; ++a)
           for (unsigned int b = 0; b < n_g; ++b)
             A[a * n_g + b] += pressure / share * m[a] * m[b];
         for (unsigned int i = 0; i < dim; ++i)
@@ -177,6 +203,7 @@ namespace impm
                   pressure * share * inverse[j][k] * inverse[l][i];
         if (kinematics.axisymmetric)
           A[n_g * n_g - 1] -= pressure * share * inverse[2][2] * inverse[2][2];
+        batch.store(A.data(), tangents, n_g * n_g);
       }
   }
 
@@ -208,4 +235,31 @@ namespace impm
 
   template class VolumeAverage<2>;
   template class VolumeAverage<3>;
+
+  // Members that are templates themselves.
+  template void
+  VolumeAverage<2>::take_out_pressure(const PointBatch<double> &,
+                                      const double &,
+                                      const Tensor<2, 3> &,
+                                      Material::Response &,
+                                      double *);
+  template void
+  VolumeAverage<2>::take_out_pressure(const PointBatch<Lanes> &,
+                                      const Lanes &,
+                                      const Tensor<2, 3, Lanes> &,
+                                      Material::Responses &,
+                                      Lanes *);
+  template void
+  VolumeAverage<3>::take_out_pressure(const PointBatch<double> &,
+                                      const double &,
+                                      const Tensor<2, 3> &,
+                                      Material::Response &,
+                                      double *);
+  template void
+  VolumeAverage<3>::take_out_pressure(const PointBatch<Lanes> &,
+                                      const Lanes &,
+                                      const Tensor<2, 3, Lanes> &,
+                                      Material::Responses &,
+                                      Lanes *);
+
 } // namespace impm

@@ -20,8 +20,10 @@ namespace impm
   {
     static constexpr unsigned int max_size = dim * dim + 1;
 
-    using List   = std::array<double, max_size>;
-    using Matrix = std::array<double, max_size * max_size>; ///< by rows
+    template <typename Number = double>
+    using List = std::array<Number, max_size>;
+    template <typename Number = double>
+    using Matrix = std::array<Number, max_size * max_size>; ///< by rows
 
     explicit Kinematics(const bool axisymmetric)
       : axisymmetric(axisymmetric)
@@ -35,25 +37,27 @@ namespace impm
     const unsigned int n_dilating;
 
     /** dF = 1 + gradient. */
-    dealii::Tensor<2, 3>
-    deformation(const double *gradient) const
+    template <typename Number>
+    dealii::Tensor<2, 3, Number>
+    deformation(const Number *gradient) const
     {
-      dealii::Tensor<2, 3> dF;
+      dealii::Tensor<2, 3, Number> dF;
       for (unsigned int i = 0; i < dim; ++i)
         for (unsigned int j = 0; j < dim; ++j)
-          dF[i][j] = gradient[dim * i + j] + (i == j ? 1 : 0);
+          dF[i][j] = gradient[dim * i + j] + (i == j ? 1. : 0.);
       for (unsigned int i = dim; i < 3; ++i)
-        dF[i][i] = 1;
+        dF[i][i] = 1.;
       if (axisymmetric)
         dF[2][2] += gradient[dim * dim];
       return dF;
     }
 
     /** A symmetric tensor as a list. */
-    List
-    list(const dealii::SymmetricTensor<2, 3> &tensor) const
+    template <typename Number>
+    List<Number>
+    list(const dealii::SymmetricTensor<2, 3, Number> &tensor) const
     {
-      List result{};
+      List<Number> result{};
       for (unsigned int i = 0; i < dim; ++i)
         for (unsigned int j = 0; j < dim; ++j)
           result[dim * i + j] = tensor[i][j];
@@ -63,16 +67,17 @@ namespace impm
     }
 
     /** factor * L^T list, where L carries a gradient on: g inverse. */
+    template <typename Number>
     void
-    carry_back(const List                 &list,
-               const dealii::Tensor<2, 3> &inverse,
-               const double                factor,
-               double                     *result) const
+    carry_back(const List<Number>                 &list,
+               const dealii::Tensor<2, 3, Number> &inverse,
+               const Number                       &factor,
+               Number                             *result) const
     {
       for (unsigned int i = 0; i < dim; ++i)
         for (unsigned int j = 0; j < dim; ++j)
           {
-            double sum = 0;
+            Number sum = 0.;
             for (unsigned int k = 0; k < dim; ++k)
               sum += list[dim * i + k] * inverse[j][k];
             result[dim * i + j] = factor * sum;
@@ -88,10 +93,11 @@ namespace impm
      * from the full tangent is a_ijkl - tau_il delta_jk (Newmark note);
      * linearized there is no K_geo.
      */
+    template <typename Number>
     void
-    spatial_tangent(const Material::Response &response,
-                    const Material::Form      form,
-                    double                   *matrix) const
+    spatial_tangent(const Material::BasicResponse<Number> &response,
+                    const Material::Form                   form,
+                    Number                                *matrix) const
     {
       const auto &c   = response.tangent;
       const auto &a   = response.full_tangent;
@@ -99,38 +105,40 @@ namespace impm
       switch (form)
         {
           case Material::Form::spatial:
-            fill(matrix, [&](auto i, auto j, auto k, auto l) {
-              const double material  = c[i][j][k][l];
-              const double geometric = i == k ? tau[j][l] : 0.;
+            fill(matrix, [&](auto i, auto j, auto k, auto l) -> Number {
+              const Number material  = c[i][j][k][l];
+              const Number geometric = i == k ? tau[j][l] : Number(0.);
               return material + geometric;
             });
             break;
           case Material::Form::full:
-            fill(matrix, [&](auto i, auto j, auto k, auto l) {
-              return a[i][j][k][l] - (j == k ? tau[i][l] : 0.);
+            fill(matrix, [&](auto i, auto j, auto k, auto l) -> Number {
+              return a[i][j][k][l] - (j == k ? tau[i][l] : Number(0.));
             });
             break;
           case Material::Form::linearized:
-            fill(matrix,
-                 [&](auto i, auto j, auto k, auto l) { return c[i][j][k][l]; });
+            fill(matrix, [&](auto i, auto j, auto k, auto l) -> Number {
+              return c[i][j][k][l];
+            });
         }
     }
 
     /** factor * L^T matrix L. */
+    template <typename Number>
     void
-    carry_back_tangent(const double               *matrix,
-                       const dealii::Tensor<2, 3> &inverse,
-                       const double                factor,
-                       double                     *result) const
+    carry_back_tangent(const Number                       *matrix,
+                       const dealii::Tensor<2, 3, Number> &inverse,
+                       const Number                       &factor,
+                       Number                             *result) const
     {
       for (unsigned int i = 0; i < dim; ++i)
         for (unsigned int k = 0; k < dim; ++k)
           {
-            double half[dim][dim];
+            Number half[dim][dim];
             for (unsigned int j = 0; j < dim; ++j)
               for (unsigned int m = 0; m < dim; ++m)
                 {
-                  double sum = 0;
+                  Number sum = 0.;
                   for (unsigned int l = 0; l < dim; ++l)
                     sum += matrix[(dim * i + j) * size + dim * k + l] *
                            inverse[m][l];
@@ -139,7 +147,7 @@ namespace impm
             for (unsigned int j = 0; j < dim; ++j)
               for (unsigned int m = 0; m < dim; ++m)
                 {
-                  double sum = 0;
+                  Number sum = 0.;
                   for (unsigned int l = 0; l < dim; ++l)
                     sum += inverse[j][l] * half[l][m];
                   result[(dim * i + j) * size + dim * k + m] = sum;
@@ -148,12 +156,12 @@ namespace impm
       if (!axisymmetric)
         return;
       const unsigned int h    = dim * dim;
-      const double       hoop = factor * inverse[2][2];
+      const Number       hoop = factor * inverse[2][2];
       result[h * size + h]    = hoop * matrix[h * size + h] * inverse[2][2];
       for (unsigned int i = 0; i < dim; ++i)
         for (unsigned int j = 0; j < dim; ++j)
           {
-            double row = 0, column = 0;
+            Number row = 0., column = 0.;
             for (unsigned int l = 0; l < dim; ++l)
               {
                 row += inverse[j][l] * matrix[(dim * i + l) * size + h];
@@ -166,9 +174,9 @@ namespace impm
 
   private:
     /** The matrix with the values of entry(i, j, k, l). */
-    template <typename Entry>
+    template <typename Number, typename Entry>
     void
-    fill(double *matrix, const Entry &entry) const
+    fill(Number *matrix, const Entry &entry) const
     {
       for (unsigned int i = 0; i < dim; ++i)
         for (unsigned int j = 0; j < dim; ++j)

@@ -2,11 +2,11 @@
 #define impm_balance_point_response_h
 
 #include <impm/balance/kinematics.h>
+#include <impm/balance/point_batch.h>
 #include <impm/balance/residual_norm.h>
 #include <impm/balance/volume_average.h>
 #include <impm/points/material_points.h>
 
-#include <array>
 #include <vector>
 
 namespace impm
@@ -69,7 +69,9 @@ namespace impm
       auto dF = kinematics.deformation(&gradients[point * kinematics.size]);
       if (is_plane_stress)
         dF[2][2] = thickening[point];
-      return average.includes(point) ? average.average(point, dF) : dF;
+      if (average.includes(point))
+        average.dilate(average.factor(point), dF);
+      return dF;
     }
 
     const double *
@@ -101,31 +103,35 @@ namespace impm
     double              potential = 0; ///< sum of V0 times those of the laws
 
   private:
-    /** Consecutive points of one law, on their way through evaluate(). */
-    struct Batch
+    /** Points of one law, on their way through evaluate(). */
+    template <typename Number>
+    struct Batch : public PointBatch<Number>
     {
-      static constexpr unsigned int max_size = 8;
-
-      template <typename T>
-      using List = std::array<T, max_size>;
-
-      unsigned int                           first, size;
-      const Material                        *law;
-      List<dealii::Tensor<2, 3>>             start, increment, total;
-      List<const double *>                   history;
-      List<double *>                         trial_history;
-      List<Material::Response>               response;
-      List<typename Kinematics<dim>::Matrix> spatial; ///< tangents
+      const Material                                   *law;
+      typename Kinematics<dim>::template List<Number>   gradient;
+      dealii::Tensor<2, 3, Number>                      increment, total;
+      Material::BasicResponse<Number>                   response;
+      typename Kinematics<dim>::template Matrix<Number> spatial; ///< tangent
     };
 
-    /** Fills the batch that starts at `first`. Returns false when a point has
-     * no stress. */
-    bool
-    evaluate_law(Batch &batch, bool with_tangent);
+    /** At points that begin with `first`, as many as there are lanes, if they
+     * are of one law. Returns their number, or none when a point has no stress.
+     */
+    template <typename Number>
+    unsigned int
+    evaluate_batch(unsigned int first, bool with_tangent, Batch<Number> &batch);
 
-    /** Turns it into stresses, tangents and potential. */
+    bool
+    evaluate_law(Batch<Lanes> &batch, bool with_tangent);
+
+    /** In plane stress, which a point finds alone. */
+    bool
+    evaluate_law(Batch<double> &batch, bool with_tangent);
+
+    /** Turns the response into stresses, tangents and potential. */
+    template <typename Number>
     void
-    carry_back(Batch &batch, bool with_tangent);
+    carry_back(Batch<Number> &batch, bool with_tangent);
 
     const MaterialPoints<dim> &points;
     const bool                 is_plane_stress;

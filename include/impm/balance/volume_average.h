@@ -2,6 +2,7 @@
 #define impm_balance_volume_average_h
 
 #include <impm/balance/kinematics.h>
+#include <impm/balance/point_batch.h>
 #include <impm/points/material_points.h>
 
 #include <vector>
@@ -48,21 +49,32 @@ namespace impm
     bool
     measure(const std::vector<double> &gradients, bool with_tangent);
 
+    /** (theta / dJ)^(1/n) at a point. */
+    double
+    factor(unsigned int point) const;
+
     /** dF_bar from dF. */
-    dealii::Tensor<2, 3>
-    average(unsigned int point, dealii::Tensor<2, 3> dF) const;
+    template <typename Number>
+    void
+    dilate(const Number &factor, dealii::Tensor<2, 3, Number> &dF) const
+    {
+      for (unsigned int i = 0; i < kinematics.n_dilating; ++i)
+        for (unsigned int j = 0; j < kinematics.n_dilating; ++j)
+          dF[i][j] *= factor;
+    }
 
     /**
-     * Takes the response of the law to dF_bar at a point and takes its mean
-     * pressure out of it. With a tangent, `matrix` comes as its spatial one
+     * Takes the responses of the law to dF_bar at points and takes their mean
+     * pressures out of them. With a tangent, `matrix` comes as the spatial one
      * and goes as A_p without what depends on the others.
      */
+    template <typename Number>
     void
-    take_out_pressure(unsigned int                point,
-                      double                      volume,
-                      const dealii::Tensor<2, 3> &inverse,
-                      Material::Response         &response,
-                      double                     *matrix);
+    take_out_pressure(const PointBatch<Number>           &batch,
+                      const Number                       &volume,
+                      const dealii::Tensor<2, 3, Number> &inverse,
+                      Material::BasicResponse<Number>    &response,
+                      Number                             *matrix);
 
     /** Gives all points their share of the mean pressure of their cell. */
     void
@@ -85,6 +97,11 @@ namespace impm
     std::vector<double> group_square; ///< sum of c_p over the group
 
   private:
+    /** The next points that take part in something, from `first` on: in no
+     * batch if there is none. */
+    PointBatch<Lanes>
+    next_batch(unsigned int first) const;
+
     const Kinematics<dim>      &kinematics;
     std::vector<double>         start_volume, jacobian;     ///< by point
     std::vector<double>         group_volume, group_change; ///< sums

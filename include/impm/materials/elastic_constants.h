@@ -74,12 +74,13 @@ namespace impm
   };
 
   /** volumetric 1 x 1 + shear times the symmetric identity. */
-  inline dealii::SymmetricTensor<4, 3>
-  isotropic_tensor(const double volumetric, const double shear)
+  template <typename Number>
+  dealii::SymmetricTensor<4, 3, Number>
+  isotropic_tensor(const Number &volumetric, const Number &shear)
   {
-    const auto unit = dealii::unit_symmetric_tensor<3>();
+    const auto unit = dealii::unit_symmetric_tensor<3, Number>();
     return volumetric * dealii::outer_product(unit, unit) +
-           shear * dealii::identity_tensor<3>();
+           shear * dealii::identity_tensor<3, Number>();
   }
 
   /** Elastic constants of which a scene chooses the pair that it gives. */

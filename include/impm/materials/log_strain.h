@@ -4,6 +4,8 @@
 #include <deal.II/base/symmetric_tensor.h>
 #include <deal.II/base/tensor.h>
 
+#include <impm/base/lanes.h>
+
 #include <array>
 
 /**
@@ -18,21 +20,26 @@
  */
 namespace impm::LogStrain
 {
+  template <typename Number>
+  using Triple = std::array<Number, 3>;
+
   /** Spectral form of a left Cauchy-Green tensor. */
+  template <typename Number>
   struct PrincipalStrains
   {
-    std::array<double, 3>               strain; ///< eps_a, unordered (-)
-    std::array<dealii::Tensor<1, 3>, 3> axis;   ///< n_a, orthonormal
-    bool                                planar; ///< n_2 = e_z exactly
+    Triple<Number>                       strain; ///< eps_a, unordered (-)
+    Triple<dealii::Tensor<1, 3, Number>> axis;   ///< n_a, orthonormal
+    bool                                 planar; ///< n_2 = e_z exactly
   };
 
   /** What a law makes of the three strains. */
+  template <typename Number>
   struct PrincipalStress
   {
-    std::array<double, 3> stress; ///< tau_a (Pa)
+    Triple<Number> stress; ///< tau_a (Pa)
 
     /** D_ab = d tau_a / d eps_b (Pa), symmetric or not. */
-    std::array<std::array<double, 3>, 3> moduli;
+    Triple<Triple<Number>> moduli;
 
     /**
      * (tau_a - tau_b) / (eps_a - eps_b) for ab = 01, 02, 12 (Pa), with its
@@ -40,21 +47,25 @@ namespace impm::LogStrain
      * in closed form, so that no digit is lost near the limit. With
      * plasticity eps is the trial strain, here as in D.
      */
-    std::array<double, 3> secant;
+    Triple<Number> secant;
   };
+
+  // Here as everywhere: of one point, or of one in each lane.
 
   /**
    * Decomposes a left Cauchy-Green tensor (-). Returns false when it is not
    * positive definite or not finite.
    */
+  template <typename Number>
   bool
-  decompose(const dealii::SymmetricTensor<2, 3> &left_cauchy_green,
-            PrincipalStrains                    &principal);
+  decompose(const dealii::SymmetricTensor<2, 3, Number> &left_cauchy_green,
+            PrincipalStrains<Number>                    &principal);
 
   /** The tensor sum_a values_a n_a x n_a. */
-  dealii::SymmetricTensor<2, 3>
-  compose(const std::array<double, 3> &values,
-          const PrincipalStrains      &principal);
+  template <typename Number>
+  dealii::SymmetricTensor<2, 3, Number>
+  compose(const Triple<Number>           &values,
+          const PrincipalStrains<Number> &principal);
 
   /**
    * The tangent of Material::Response, from the principal (trial) strains
@@ -68,10 +79,11 @@ namespace impm::LogStrain
    * second how the axes turn; g is the usual
    * 2 (tau_a b_b - tau_b b_a) / (b_a - b_b).
    */
+  template <typename Number>
   void
-  lie_tangent(const PrincipalStrains        &principal,
-              const PrincipalStress         &response,
-              dealii::SymmetricTensor<4, 3> &tangent);
+  lie_tangent(const PrincipalStrains<Number>        &principal,
+              const PrincipalStress<Number>         &response,
+              dealii::SymmetricTensor<4, 3, Number> &tangent);
 } // namespace impm::LogStrain
 
 #endif

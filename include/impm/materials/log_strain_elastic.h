@@ -22,12 +22,13 @@ namespace impm
   struct HenckyElasticity : public ElasticConstants
   {
     /** psi (J/m^3) of principal strains. */
-    double
-    energy(const std::array<double, 3> &strain) const
+    template <typename Number>
+    Number
+    energy(const std::array<Number, 3> &strain) const
     {
-      const double volumetric = strain[0] + strain[1] + strain[2];
-      double       squares    = 0.;
-      for (const double e : strain)
+      const Number volumetric = strain[0] + strain[1] + strain[2];
+      Number       squares    = 0.;
+      for (const Number &e : strain)
         squares += (e - volumetric / 3.) * (e - volumetric / 3.);
       return 0.5 * bulk * volumetric * volumetric + shear * squares;
     }
@@ -36,18 +37,19 @@ namespace impm
     double
     energy(const dealii::SymmetricTensor<2, 3> &left_cauchy_green) const
     {
-      LogStrain::PrincipalStrains principal;
+      LogStrain::PrincipalStrains<double> principal;
       return LogStrain::decompose(left_cauchy_green, principal) ?
                energy(principal.strain) :
                std::numeric_limits<double>::quiet_NaN();
     }
 
     /** tau_a and what goes with them, of principal strains. */
-    LogStrain::PrincipalStress
-    stress(const std::array<double, 3> &strain) const
+    template <typename Number>
+    LogStrain::PrincipalStress<Number>
+    stress(const std::array<Number, 3> &strain) const
     {
-      LogStrain::PrincipalStress result;
-      const double               volumetric = strain[0] + strain[1] + strain[2];
+      LogStrain::PrincipalStress<Number> result;
+      const Number volumetric = strain[0] + strain[1] + strain[2];
       for (unsigned int a = 0; a < 3; ++a)
         {
           result.stress[a] =
@@ -61,24 +63,25 @@ namespace impm
   };
 
   /** Hencky's elasticity from the total deformation; keeps no history. */
-  class LogStrainElastic final : public PointwiseLaw<LogStrainElastic>
+  class LogStrainElastic final : public LawInLanes<LogStrainElastic>
   {
   public:
     LogStrainElastic(const MaterialSpec &spec,
                      PointLayout &,
                      const ElasticConstants &elasticity)
-      : PointwiseLaw(spec, elasticity.young, elasticity.longitudinal_modulus())
+      : LawInLanes(spec, elasticity.young, elasticity.longitudinal_modulus())
       , elasticity{elasticity}
     {}
 
+    template <typename Number>
     bool
-    evaluate_one(const Step &step,
-                 const bool  with_tangent,
-                 Response   &response) const override
+    evaluate_any(const BasicStep<Number> &step,
+                 const bool               with_tangent,
+                 BasicResponse<Number>   &response) const
     {
       // b does not tell a body from its mirror image, J does
-      LogStrain::PrincipalStrains principal;
-      if (!(dealii::determinant(step.total) > 0.) ||
+      LogStrain::PrincipalStrains<Number> principal;
+      if (!all_of(dealii::determinant(step.total) > 0.) ||
           !LogStrain::decompose(
             dealii::Physics::Elasticity::Kinematics::b(step.total), principal))
         return false;
@@ -88,7 +91,7 @@ namespace impm
       response.potential        = elasticity.energy(principal.strain);
       if (with_tangent)
         LogStrain::lie_tangent(principal, stress, response.tangent);
-      return std::isfinite(response.potential);
+      return all_of(is_finite(response.potential));
     }
 
     Energy

@@ -29,14 +29,14 @@ namespace impm
    * History: "elastic_left_cauchy_green" b_e (-) and
    * "equivalent_plastic_strain" alpha (-).
    */
-  class LogStrainVonMises final : public PointwiseLaw<LogStrainVonMises>
+  class LogStrainVonMises final : public LawInLanes<LogStrainVonMises>
   {
   public:
     LogStrainVonMises(const MaterialSpec     &spec,
                       PointLayout            &history,
                       const ElasticConstants &elasticity,
                       const LinearHardening  &hardening)
-      : PointwiseLaw(spec, elasticity.young, elasticity.longitudinal_modulus())
+      : LawInLanes(spec, elasticity.young, elasticity.longitudinal_modulus())
       , elasticity{elasticity}
       , hardening(hardening)
       , elastic(history, "elastic_left_cauchy_green")
@@ -50,86 +50,103 @@ namespace impm
       elastic.store(dealii::unit_symmetric_tensor<3>(), history);
     }
 
+    template <typename Number>
     bool
-    evaluate_one(const Step &step,
-                 const bool  with_tangent,
-                 Response   &response) const override
+    evaluate_any(const BasicStep<Number> &step,
+                 const bool               with_tangent,
+                 BasicResponse<Number>   &response) const
     {
-      if (!(dealii::determinant(step.increment) > 0.) ||
-          !(dealii::determinant(step.total) > 0.))
+      if (!all_of(dealii::determinant(step.increment) > 0.) ||
+          !all_of(dealii::determinant(step.total) > 0.))
         return false;
 
       const auto trial =
         dealii::Physics::Transformations::Contravariant::push_forward(
           elastic.load(step.history), step.increment);
-      LogStrain::PrincipalStrains principal;
+      LogStrain::PrincipalStrains<Number> principal;
       if (!LogStrain::decompose(trial, principal))
         return false;
 
       auto                  stress = elasticity.stress(principal.strain);
-      std::array<double, 3> elastic_strain = principal.strain;
-      double                alpha          = step.history[plastic_offset];
+      std::array<Number, 3> elastic_strain = principal.strain;
+      const Number          before         = read(step.history, plastic_offset);
+      Number                alpha          = before;
 
-      const double mean =
+      const Number mean =
         (stress.stress[0] + stress.stress[1] + stress.stress[2]) / 3.;
-      std::array<double, 3> deviator;
-      double                squares = 0.;
+      std::array<Number, 3> deviator;
+      Number                squares = 0.;
       for (unsigned int a = 0; a < 3; ++a)
         {
           deviator[a] = stress.stress[a] - mean;
           squares += deviator[a] * deviator[a];
         }
-      const double q = std::sqrt(1.5 * squares);
+      using std::sqrt;
+      const Number q = sqrt(1.5 * squares);
 
-      const double excess = q - hardening.yield_stress(alpha);
-      if (excess > 0.)
+      const Number excess = q - hardening.yield_stress(before);
+      const auto   flows  = excess > 0.;
+      auto         end    = trial;
+      if (any_of(flows))
         {
           const double shear      = elasticity.shear;
           const double resistance = 3. * shear + hardening.modulus;
-          const double flow       = excess / resistance;
+          const Number flow = select(flows, excess / resistance, Number(0.));
           alpha += flow;
 
           // The deviator shrinks onto the yield limit along its own direction.
-          const double scale = hardening.yield_stress(alpha) / q;
-          const double mean_strain =
+          const Number size = select(flows, q, Number(1.));
+          const Number scale =
+            select(flows, hardening.yield_stress(alpha) / size, Number(1.));
+          const Number mean_strain =
             (elastic_strain[0] + elastic_strain[1] + elastic_strain[2]) / 3.;
-          std::array<double, 3> stretches_squared;
+          std::array<Number, 3> stretches_squared;
           for (unsigned int a = 0; a < 3; ++a)
             {
-              elastic_strain[a] =
+              const Number shrunk =
                 mean_strain + scale * (elastic_strain[a] - mean_strain);
-              stretches_squared[a] = std::exp(2. * elastic_strain[a]);
-              stress.stress[a]     = mean + scale * deviator[a];
+              elastic_strain[a] = select(flows, shrunk, elastic_strain[a]);
+              stretches_squared[a] =
+                each([](const double x) { return std::exp(x); },
+                     Number(2. * elastic_strain[a]));
+              stress.stress[a] =
+                select(flows, mean + scale * deviator[a], stress.stress[a]);
             }
-          elastic.store(LogStrain::compose(stretches_squared, principal),
-                        step.trial_history);
+          const auto returned =
+            LogStrain::compose(stretches_squared, principal);
+          for (unsigned int i = 0; i < end.n_independent_components; ++i)
+            end.access_raw_entry(i) = select(flows,
+                                             returned.access_raw_entry(i),
+                                             trial.access_raw_entry(i));
 
           // The scale itself changes with the trial strains, through q only.
           if (with_tangent)
             {
-              const double softening =
-                9. * shear * shear * (1. / resistance - flow / q);
-              const double lame = elasticity.bulk - 2. / 3. * shear * scale;
+              const Number softening =
+                select(flows,
+                       9. * shear * shear * (1. / resistance - flow / size),
+                       Number(0.));
+              const Number lame = elasticity.bulk - 2. / 3. * shear * scale;
               for (unsigned int a = 0; a < 3; ++a)
                 {
                   for (unsigned int b = 0; b < 3; ++b)
-                    stress.moduli[a][b] =
-                      lame - softening * (deviator[a] / q) * (deviator[b] / q);
+                    stress.moduli[a][b] = lame - softening *
+                                                   (deviator[a] / size) *
+                                                   (deviator[b] / size);
                   stress.moduli[a][a] += 2. * shear * scale;
                 }
               stress.secant.fill(2. * shear * scale);
             }
         }
-      else
-        elastic.store(trial, step.trial_history);
-      step.trial_history[plastic_offset] = alpha;
+      elastic.store(end, step.trial_history);
+      write(alpha, step.trial_history, plastic_offset);
 
       response.kirchhoff_stress = LogStrain::compose(stress.stress, principal);
       response.potential =
         elasticity.energy(elastic_strain) + hardening.work(alpha);
       if (with_tangent)
         LogStrain::lie_tangent(principal, stress, response.tangent);
-      return std::isfinite(response.potential);
+      return all_of(is_finite(response.potential));
     }
 
     Energy

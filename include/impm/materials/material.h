@@ -39,30 +39,24 @@ namespace impm
   class Material : public MaterialSpec
   {
   public:
-    /** One step at one point. */
-    struct Step
+    /** One step at one point, or at one point in each lane. */
+    template <typename Number>
+    struct BasicStep
     {
-      const dealii::Tensor<2, 3> &increment; ///< dF: from t_n to t_{n+1}
-      const dealii::Tensor<2, 3> &total;     ///< F at t_{n+1} = dF F_n
+      const dealii::Tensor<2, 3, Number> &increment; ///< dF: t_n to t_{n+1}
+      const dealii::Tensor<2, 3, Number> &total;     ///< F at t_{n+1} = dF F_n
       /**
        * Length of the step (s). With 0 and no increment the stress is that of
        * the state at t_n, whatever came before it.
        */
-      double        dt;
-      const double *history;       ///< at t_n
-      double       *trial_history; ///< at t_{n+1}, does not overlap the other
+      double                       dt;
+      Places<Number, const double> history; ///< at t_n
+      /** At t_{n+1}, does not overlap the other. */
+      Places<Number, double> trial_history;
     };
 
-    /** The same at many points: lists, and where the histories are. */
-    struct Batch
-    {
-      unsigned int                n_points;
-      const dealii::Tensor<2, 3> *increments;
-      const dealii::Tensor<2, 3> *totals;
-      double                      dt;
-      const double *const        *histories;
-      double *const              *trial_histories;
-    };
+    using Step  = BasicStep<double>;
+    using Steps = BasicStep<Lanes>;
 
     /** What a law takes the step for, and with it what its tangent is. */
     enum class Form
@@ -72,16 +66,17 @@ namespace impm
       linearized ///< small strains about t_n, where forces act, too
     };
 
-    struct Response
+    template <typename Number>
+    struct BasicResponse
     {
       /** tau = J sigma, per initial volume (Pa); linearized: J_n sigma. */
-      dealii::SymmetricTensor<2, 3> kirchhoff_stress;
+      dealii::SymmetricTensor<2, 3, Number> kirchhoff_stress;
 
       /**
        * Incremental potential per initial volume (J/m^3), up to a constant of
        * the step: tau is its derivative. Only for laws with has_potential().
        */
-      double potential = 0;
+      Number potential = 0.;
 
       /**
        * c with (Lie derivative of tau) = c : d, that is
@@ -89,14 +84,17 @@ namespace impm
        * (symmetrized over k, l). Linearized: d (J_n sigma_ij) / d strain_kl.
        * Filled only when asked for. Units Pa.
        */
-      dealii::SymmetricTensor<4, 3> tangent;
+      dealii::SymmetricTensor<4, 3, Number> tangent;
 
       /**
        * a_ijkl = d tau_ij / d dF_km dF_lm (Pa), in its place when full. Last,
        * so that the other laws never touch its memory.
        */
-      dealii::Tensor<4, 3> full_tangent;
+      dealii::Tensor<4, 3, Number> full_tangent;
     };
+
+    using Response  = BasicResponse<double>;
+    using Responses = BasicResponse<Lanes>;
 
     /** Energy per initial volume (J/m^3) in a state. */
     struct Energy
@@ -132,14 +130,13 @@ namespace impm
                  Response   &response) const = 0;
 
     /**
-     * The same at all points of a batch, a response for each; false when some
-     * point has no stress. Laws that look at one point after the other have it
-     * from PointwiseLaw.
+     * The same at one point in each lane; false when some point has no stress.
+     * Two lanes may be of one point.
      */
     virtual bool
-    evaluate(const Batch &batch,
+    evaluate(const Steps &steps,
              bool         with_tangent,
-             Response    *responses) const = 0;
+             Responses   &responses) const = 0;
 
     /** Energy in the state (F, history) at the end of a step. */
     virtual Energy
@@ -206,8 +203,8 @@ namespace impm
   };
 
   /**
-   * A law (final, derived from Base) that evaluates one point after the other:
-   * one virtual call is made for a batch.
+   * A law (final, derived from Base) that evaluates one point after the other,
+   * in evaluate_one().
    */
   template <typename Law, typename Base = Material>
   class PointwiseLaw : public Base
@@ -216,21 +213,79 @@ namespace impm
     using Base::Base;
 
     bool
-    evaluate(const Material::Batch &batch,
+    evaluate(const Material::Steps &steps,
              const bool             with_tangent,
-             Material::Response    *responses) const final
+             Material::Responses   &responses) const final
     {
-      const auto &law = static_cast<const Law &>(*this);
-      for (unsigned int p = 0; p < batch.n_points; ++p)
-        if (!law.evaluate_one({batch.increments[p],
-                               batch.totals[p],
-                               batch.dt,
-                               batch.histories[p],
-                               batch.trial_histories[p]},
-                              with_tangent,
-                              responses[p]))
-          return false;
+      const auto        &law  = static_cast<const Law &>(*this);
+      const bool         full = this->form() == Material::Form::full;
+      Material::Response response;
+      for (unsigned int lane = 0; lane < n_lanes; ++lane)
+        {
+          dealii::Tensor<2, 3> increment, total;
+          for (unsigned int i = 0; i < 3; ++i)
+            for (unsigned int j = 0; j < 3; ++j)
+              {
+                increment[i][j] = steps.increment[i][j][lane];
+                total[i][j]     = steps.total[i][j][lane];
+              }
+          if (!law.evaluate_one({increment,
+                                 total,
+                                 steps.dt,
+                                 steps.history[lane],
+                                 steps.trial_history[lane]},
+                                with_tangent,
+                                response))
+            return false;
+          const auto put = [lane](auto &into, const auto &from) {
+            for (unsigned int i = 0; i < from.n_independent_components; ++i)
+              into.access_raw_entry(i)[lane] = from.access_raw_entry(i);
+          };
+          put(responses.kirchhoff_stress, response.kirchhoff_stress);
+          responses.potential[lane] = response.potential;
+          if (with_tangent && !full)
+            for (unsigned int i = 0; i < 6; ++i)
+              for (unsigned int j = 0; j < 6; ++j)
+                responses.tangent.access_raw_entry(6 * i + j)[lane] =
+                  response.tangent.access_raw_entry(6 * i + j);
+          if (with_tangent && full)
+            for (unsigned int ij = 0; ij < 9; ++ij)
+              for (unsigned int kl = 0; kl < 9; ++kl)
+                responses.full_tangent[ij / 3][ij % 3][kl / 3][kl % 3][lane] =
+                  response.full_tangent[ij / 3][ij % 3][kl / 3][kl % 3];
+        }
       return true;
+    }
+  };
+
+  /**
+   * A law (final, derived from Base) whose evaluate_any() is written for any
+   * number: it evaluates a point in each lane at once.
+   */
+  template <typename Law, typename Base = Material>
+  class LawInLanes : public Base
+  {
+  public:
+    using Base::Base;
+
+    bool
+    evaluate_one(const Material::Step &step,
+                 const bool            with_tangent,
+                 Material::Response   &response) const final
+    {
+      return static_cast<const Law &>(*this).evaluate_any(step,
+                                                          with_tangent,
+                                                          response);
+    }
+
+    bool
+    evaluate(const Material::Steps &steps,
+             const bool             with_tangent,
+             Material::Responses   &responses) const final
+    {
+      return static_cast<const Law &>(*this).evaluate_any(steps,
+                                                          with_tangent,
+                                                          responses);
     }
   };
 
@@ -243,16 +298,19 @@ namespace impm
       , offset(history.add(name, PointLayout::Kind::symmetric_tensor))
     {}
 
-    dealii::SymmetricTensor<2, 3>
-    load(const double *history) const
+    template <typename Place>
+    auto
+    load(const Place &history) const
     {
-      return storage.load_symmetric(history + offset);
+      return storage.load_symmetric(history, offset);
     }
 
+    template <typename Number, typename Place>
     void
-    store(const dealii::SymmetricTensor<2, 3> &tensor, double *history) const
+    store(const dealii::SymmetricTensor<2, 3, Number> &tensor,
+          const Place                                 &history) const
     {
-      storage.store_symmetric(tensor, history + offset);
+      storage.store_symmetric(tensor, history, offset);
     }
 
   private:

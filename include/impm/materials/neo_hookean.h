@@ -24,49 +24,52 @@ namespace impm
    *   tau = G J^(-2/3) dev b + K ln J 1.
    */
   template <bool decoupled>
-  class NeoHookean final : public PointwiseLaw<NeoHookean<decoupled>>
+  class NeoHookean final : public LawInLanes<NeoHookean<decoupled>>
   {
   public:
     NeoHookean(const MaterialSpec &spec,
                PointLayout &,
                const ElasticConstants &constants)
-      : PointwiseLaw<NeoHookean>(spec,
-                                 constants.young,
-                                 constants.longitudinal_modulus())
+      : LawInLanes<NeoHookean>(spec,
+                               constants.young,
+                               constants.longitudinal_modulus())
       , constants(constants)
       , volumetric(decoupled ? constants.bulk : constants.lame())
     {}
 
+    template <typename Number>
     bool
-    evaluate_one(const Material::Step &step,
-                 const bool            with_tangent,
-                 Material::Response   &response) const override
+    evaluate_any(const Material::BasicStep<Number> &step,
+                 const bool                         with_tangent,
+                 Material::BasicResponse<Number>   &response) const
     {
-      dealii::SymmetricTensor<2, 3> b_minus_1;
-      const double                  log_J = measure(step.total, b_minus_1);
-      const auto                    unit  = dealii::unit_symmetric_tensor<3>();
-      const double                  pressure = volumetric * log_J;
-      const double                  shear    = decoupled ?
-                                                 constants.shear * std::exp(-2. / 3. * log_J) :
-                                                 constants.shear;
-      const dealii::SymmetricTensor<2, 3> shape =
+      dealii::SymmetricTensor<2, 3, Number> b_minus_1;
+      const Number log_J    = measure(step.total, b_minus_1);
+      const auto   unit     = dealii::unit_symmetric_tensor<3, Number>();
+      const Number pressure = volumetric * log_J;
+      const Number shear =
+        decoupled ?
+          constants.shear * each([](const double x) { return std::exp(x); },
+                                 Number(-2. / 3. * log_J)) :
+          Number(constants.shear);
+      const dealii::SymmetricTensor<2, 3, Number> shape =
         shear * (decoupled ? dealii::deviator(b_minus_1) : b_minus_1);
       response.kirchhoff_stress = shape + pressure * unit;
       response.potential        = potential(b_minus_1, log_J);
       if (with_tangent && decoupled)
         {
           // eq. 21 times J, where the mu of 2 mu [...] is G tr(b) / (3 J^(2/3))
-          const double mu = shear * (1. + dealii::trace(b_minus_1) / 3.);
+          const Number mu = shear * (1. + dealii::trace(b_minus_1) / 3.);
           response.tangent =
-            isotropic_tensor(volumetric - 2. / 3. * mu, 2. * (mu - pressure)) -
-            2. / 3. *
-              (dealii::outer_product(shape, unit) +
-               dealii::outer_product(unit, shape));
+            isotropic_tensor<Number>(volumetric - 2. / 3. * mu,
+                                     2. * (mu - pressure)) -
+            Number(2. / 3.) * (dealii::outer_product(shape, unit) +
+                               dealii::outer_product(unit, shape));
         }
       else if (with_tangent)
         response.tangent =
-          isotropic_tensor(volumetric, 2. * (shear - pressure));
-      return std::isfinite(response.potential);
+          isotropic_tensor<Number>(volumetric, 2. * (shear - pressure));
+      return all_of(is_finite(response.potential));
     }
 
     Material::Energy
@@ -79,38 +82,46 @@ namespace impm
 
   private:
     /** Sets F F^T - 1 and returns ln J; NaN where J <= 0, as all else then. */
-    static double
-    measure(const dealii::Tensor<2, 3>    &F,
-            dealii::SymmetricTensor<2, 3> &b_minus_1)
+    template <typename Number>
+    static Number
+    measure(const dealii::Tensor<2, 3, Number>    &F,
+            dealii::SymmetricTensor<2, 3, Number> &b_minus_1)
     {
       // In terms of H = F - 1, so that small strains keep all of their digits.
-      dealii::Tensor<2, 3> H = F;
+      dealii::Tensor<2, 3, Number> H = F;
       for (unsigned int d = 0; d < 3; ++d)
         H[d][d] -= 1.;
       for (unsigned int i = 0; i < 3; ++i)
         for (unsigned int j = i; j < 3; ++j)
           b_minus_1[i][j] = H[i][j] + H[j][i] + H[i] * H[j];
 
-      const double trace  = dealii::trace(H);
-      const double second = H[0][0] * H[1][1] - H[0][1] * H[1][0] +
+      const Number trace  = dealii::trace(H);
+      const Number second = H[0][0] * H[1][1] - H[0][1] * H[1][0] +
                             H[1][1] * H[2][2] - H[1][2] * H[2][1] +
                             H[2][2] * H[0][0] - H[2][0] * H[0][2];
-      const double J_minus_1 = trace + second + dealii::determinant(H);
-      const double J         = dealii::determinant(F);
-      if (!(J > 0.))
-        return std::numeric_limits<double>::quiet_NaN();
-      return std::abs(J_minus_1) < 0.5 ? std::log1p(J_minus_1) : std::log(J);
+      const Number J_minus_1 = trace + second + dealii::determinant(H);
+      const Number J         = dealii::determinant(F);
+      using std::abs;
+      return select(J > 0.,
+                    select(abs(J_minus_1) < 0.5,
+                           each([](const double x) { return std::log1p(x); },
+                                J_minus_1),
+                           each([](const double x) { return std::log(x); }, J)),
+                    Number(std::numeric_limits<double>::quiet_NaN()));
     }
 
     /** psi (J/m^3). */
-    double
-    potential(const dealii::SymmetricTensor<2, 3> &b_minus_1,
-              const double                         log_J) const
+    template <typename Number>
+    Number
+    potential(const dealii::SymmetricTensor<2, 3, Number> &b_minus_1,
+              const Number                                &log_J) const
     {
-      const double trace  = dealii::trace(b_minus_1);
-      const double shrink = std::expm1(-2. / 3. * log_J); // J^(-2/3) - 1
-      const double shape =
-        decoupled ? 3. * shrink + trace + shrink * trace : trace - 2. * log_J;
+      const Number trace  = dealii::trace(b_minus_1);
+      const Number shrink = // J^(-2/3) - 1
+        each([](const double x) { return std::expm1(x); },
+             Number(-2. / 3. * log_J));
+      const Number shape = decoupled ? 3. * shrink + trace + shrink * trace :
+                                       Number(trace - 2. * log_J);
       return 0.5 * constants.shear * shape + 0.5 * volumetric * log_J * log_J;
     }
 

@@ -4,7 +4,10 @@
 #include <deal.II/base/symmetric_tensor.h>
 #include <deal.II/base/tensor.h>
 
+#include <impm/base/lanes.h>
+
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -115,15 +118,19 @@ namespace impm
       return 0;
     }
 
-    dealii::Tensor<2, 3>
-    load_tensor(const double *values) const
+    /** From where the values of a point are, or those of several. */
+    template <typename Place>
+    dealii::Tensor<2, 3, NumberAt<Place>>
+    load_tensor(const Place &values) const
     {
-      const unsigned int   n = geometry == GeometryKind::three_d ? 3 : 2;
-      dealii::Tensor<2, 3> t;
+      const unsigned int n = geometry == GeometryKind::three_d ? 3 : 2;
+      dealii::Tensor<2, 3, NumberAt<Place>> t;
       for (unsigned int i = 0; i < n; ++i)
-        std::copy_n(values + n * i, n, t[i].begin_raw());
+        for (unsigned int j = 0; j < n; ++j)
+          t[i][j] = read(values, n * i + j);
       if (n == 2)
-        t[2][2] = geometry == GeometryKind::plane_strain ? 1. : values[4];
+        t[2][2] = geometry == GeometryKind::plane_strain ? NumberAt<Place>(1.) :
+                                                           read(values, 4);
       return t;
     }
 
@@ -137,32 +144,24 @@ namespace impm
         values[4] = t[2][2];
     }
 
-    dealii::SymmetricTensor<2, 3>
-    load_symmetric(const double *values) const
+    template <typename Place>
+    dealii::SymmetricTensor<2, 3, NumberAt<Place>>
+    load_symmetric(const Place &values, const unsigned int offset = 0) const
     {
-      if (geometry != GeometryKind::three_d)
-        return dealii::SymmetricTensor<2, 3>(
-          {values[0], values[1], values[3], values[2], 0., 0.});
-      dealii::SymmetricTensor<2, 3> t;
-      for (unsigned int i = 0; i < 6; ++i)
-        t.access_raw_entry(i) = values[i];
+      dealii::SymmetricTensor<2, 3, NumberAt<Place>> t;
+      for (unsigned int i = 0; i < n_components(Kind::symmetric_tensor); ++i)
+        t.access_raw_entry(raw_entry(i)) = read(values, offset + i);
       return t;
     }
 
+    template <typename Number, typename Place>
     void
-    store_symmetric(const dealii::SymmetricTensor<2, 3> &t,
-                    double                              *values) const
+    store_symmetric(const dealii::SymmetricTensor<2, 3, Number> &t,
+                    const Place                                 &values,
+                    const unsigned int offset = 0) const
     {
-      if (geometry == GeometryKind::three_d)
-        for (unsigned int i = 0; i < 6; ++i)
-          values[i] = t.access_raw_entry(i);
-      else
-        {
-          values[0] = t[0][0];
-          values[1] = t[1][1];
-          values[2] = t[0][1];
-          values[3] = t[2][2];
-        }
+      for (unsigned int i = 0; i < n_components(Kind::symmetric_tensor); ++i)
+        write(t.access_raw_entry(raw_entry(i)), values, offset + i);
     }
 
     const std::vector<Field> &
@@ -174,6 +173,15 @@ namespace impm
     const GeometryKind geometry;
 
   private:
+    /** Where deal.II keeps a component of a symmetric tensor. */
+    unsigned int
+    raw_entry(const unsigned int component) const
+    {
+      constexpr std::array<unsigned int, 4> in_the_plane = {{0, 1, 3, 2}};
+      return geometry == GeometryKind::three_d ? component :
+                                                 in_the_plane[component];
+    }
+
     std::vector<Field> all_fields;
     unsigned int       n_doubles = 0;
   };

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include <experimental/simd>
-
 namespace impm
 {
   using namespace dealii;
@@ -91,22 +89,11 @@ namespace impm
 
   namespace
   {
-    /** What is computed with in one instruction; lists are filled up with zeros
-     * to a multiple. */
-    constexpr unsigned int lanes = 4;
-    namespace stdx               = std::experimental;
-    using Lanes = stdx::simd<double, stdx::simd_abi::deduce_t<double, lanes>>;
-
+    /** Lists are filled up with zeros. */
     constexpr unsigned int
     filled_up(const unsigned int n)
     {
-      return (n + lanes - 1) / lanes * lanes;
-    }
-
-    inline Lanes
-    load(const double *list)
-    {
-      return Lanes(list, stdx::element_aligned);
+      return (n + n_lanes - 1) / n_lanes * n_lanes;
     }
   } // namespace
 
@@ -154,24 +141,24 @@ namespace impm
         for (unsigned int c = 0; c < dim && touches; ++c)
           {
             std::array<double, n_list> AB; // a column of it
-            for (unsigned int a = 0; a < n_list; a += lanes)
+            for (unsigned int a = 0; a < n_list; a += n_lanes)
               {
-                Lanes part = slopes[m] * load(&A[dim * c][a]);
+                Lanes part = slopes[m] * load_lanes(&A[dim * c][a]);
                 for (unsigned int d = 1; d < dim; ++d)
-                  part += slopes[n * d + m] * load(&A[dim * c + d][a]);
+                  part += slopes[n * d + m] * load_lanes(&A[dim * c + d][a]);
                 if (axisymmetric && c == 0)
-                  part += hoops[m] * load(&A[dim * dim][a]);
+                  part += hoops[m] * load_lanes(&A[dim * dim][a]);
                 part.copy_to(&AB[a], stdx::element_aligned);
               }
             for (unsigned int b = 0; b < dim; ++b)
-              for (unsigned int l = 0; l < n; l += lanes)
+              for (unsigned int l = 0; l < n; l += n_lanes)
                 {
                   double *place = sum + (c * dim + b) * n + l;
-                  Lanes   part  = load(place);
+                  Lanes   part  = load_lanes(place);
                   for (unsigned int d = 0; d < dim; ++d)
-                    part += AB[dim * b + d] * load(&slopes[n * d + l]);
+                    part += AB[dim * b + d] * load_lanes(&slopes[n * d + l]);
                   if (axisymmetric && b == 0)
-                    part += AB[dim * dim] * load(&hoops[l]);
+                    part += AB[dim * dim] * load_lanes(&hoops[l]);
                   part.copy_to(place, stdx::element_aligned);
                 }
           }

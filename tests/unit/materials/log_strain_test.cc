@@ -210,7 +210,7 @@ TEST(LogStrain, DecompositionRebuildsTheTensor)
             b[0][2] = out_of_plane;
             b[1][2] = -0.5 * out_of_plane;
 
-            LogStrain::PrincipalStrains principal;
+            LogStrain::PrincipalStrains<double> principal;
             ASSERT_TRUE(LogStrain::decompose(b, principal)) << b;
 
             std::array<double, 3> squares;

@@ -41,8 +41,8 @@ namespace
       const auto            inverse = law.form() == Material::Form::linearized ?
                                         diagonal(1, 1, 1) :
                                         invert(increment);
-      Kinematics<2>::List   P;
-      Kinematics<2>::Matrix A;
+      Kinematics<2>::List<>   P;
+      Kinematics<2>::Matrix<> A;
       const Kinematics<2>   kinematics(false);
       kinematics.carry_back(kinematics.list(response.kirchhoff_stress),
                             inverse,
@@ -56,7 +56,7 @@ namespace
     }
 
     unsigned long         n_evaluations = 0;
-    Kinematics<2>::Matrix spatial;
+    Kinematics<2>::Matrix<> spatial;
   };
 
   Tensor<2, 3>

@@ -36,15 +36,17 @@ namespace impm
     }
 
     /** Yield stress (Pa). */
-    double
-    yield_stress(const double plastic_strain) const
+    template <typename Number>
+    Number
+    yield_stress(const Number &plastic_strain) const
     {
       return initial + modulus * plastic_strain;
     }
 
     /** Its integral since the start: plastic work (J/m^3). */
-    double
-    work(const double plastic_strain) const
+    template <typename Number>
+    Number
+    work(const Number &plastic_strain) const
     {
       return (initial + 0.5 * modulus * plastic_strain) * plastic_strain;
     }

@@ -17,11 +17,11 @@ namespace impm
                         unsigned long              &n_evaluations)
   {
     // with the thickness as the hoop of axisymmetry
-    const Kinematics<2>    thick(true);
-    Kinematics<2>::Matrix<>  space;
-    constexpr unsigned int n = 5, h = n - 1;
-    constexpr double       infinity = std::numeric_limits<double>::infinity();
-    const auto             form     = material.form();
+    const Kinematics<2>     thick(true);
+    Kinematics<2>::Matrix<> space;
+    constexpr unsigned int  n = 5, h = n - 1;
+    constexpr double        infinity = std::numeric_limits<double>::infinity();
+    const auto              form     = material.form();
 
     // Newton's method for the strain across: ln dF_33, or the linear one. The
     // stress that the law knows, tau or (by volume at t_n or as tau / J) sigma,

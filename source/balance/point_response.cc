@@ -11,6 +11,24 @@ namespace impm
 {
   using namespace dealii;
 
+  namespace
+  {
+    /** Adds the values of points to a list that has n for each. */
+    template <typename ValueOf>
+    void
+    add_to(std::vector<double>     &list,
+           const unsigned int       n,
+           const PointBatch<Lanes> &batch,
+           const ValueOf           &value_of)
+    {
+      for (unsigned int i = 0; i < n; ++i)
+        batch.scatter(value_of(i),
+                      [&](const double value, const unsigned int p) {
+                        list[p * n + i] += value;
+                      });
+    }
+  } // namespace
+
   template <int dim>
   PointResponse<dim>::PointResponse(const MaterialPoints<dim> &points,
                                     const double               dt,
@@ -30,7 +48,20 @@ namespace impm
           0)
     , end_stresses(points.size() * n_stress)
     , thickening(is_plane_stress ? points.size() : 0, 1.)
-  {}
+  {
+    const unsigned int n         = kinematics.size;
+    const bool         symmetric = points.have_symmetric_tangents();
+    place_of_entry.resize(n * n);
+    for (unsigned int a = 0; a < n; ++a)
+      for (unsigned int b = 0; b < n; ++b)
+        if (b <= a || !symmetric)
+          {
+            place_of_entry[a * n + b] = entries.size();
+            if (symmetric)
+              place_of_entry[b * n + a] = entries.size();
+            entries.push_back(a * n + b);
+          }
+  }
 
   template <int dim>
   template <typename Number>
@@ -148,7 +179,10 @@ namespace impm
       return;
     typename Kinematics<dim>::template Matrix<Number> tangent;
     kinematics.carry_back_tangent(matrix, inverse, volume, tangent.data());
-    batch.store(tangent.data(), tangents, n_g * n_g);
+    const auto to = batch.template places<double>(
+      [&](const unsigned int p) { return &tangents[p * entries.size()]; });
+    for (unsigned int k = 0; k < entries.size(); ++k)
+      write(tangent[entries[k]], to, k);
   }
 
   template <int dim>
@@ -160,7 +194,7 @@ namespace impm
     if (!average.measure(gradients, with_tangent))
       return false;
     if (with_tangent) // explicit steps never ask for it
-      tangents.resize(points.size() * kinematics.size * kinematics.size);
+      tangents.resize(points.size() * entries.size());
     const auto evaluate_all = [&](auto &batch) {
       unsigned int size = 0;
       for (unsigned int p = 0; p < points.size(); p += size)
@@ -180,7 +214,18 @@ namespace impm
         if (!evaluate_all(batch))
           return false;
       }
-    average.share_pressure(gradients, with_tangent, stresses, tangents);
+    average.share_pressure(
+      gradients,
+      with_tangent,
+      [&](const auto &batch, const auto &stress, const auto &tangent) {
+        add_to(stresses, kinematics.size, batch, [&](const unsigned int a) {
+          return stress[a];
+        });
+        if (with_tangent)
+          add_to(tangents, entries.size(), batch, [&](const unsigned int k) {
+            return tangent[entries[k]];
+          });
+      });
     return true;
   }
 
@@ -225,14 +270,13 @@ namespace impm
     const unsigned int n_g = kinematics.size;
     for (unsigned int p = 0; p < points.size(); ++p)
       {
-        const double *A = tangent(p);
         const double *g = &gradient_changes[p * n_g];
         double       *s = &stress_changes[p * n_g];
         for (unsigned int a = 0; a < n_g; ++a)
           {
             double sum = 0;
             for (unsigned int b = 0; b < n_g; ++b)
-              sum += A[a * n_g + b] * g[b];
+              sum += tangent(p, a, b) * g[b];
             s[a] = sum;
           }
       }
@@ -277,18 +321,17 @@ namespace impm
         // The form in g or, with F-bar, in (g, d ln theta) of a point.
         const bool coupled = average.includes(p);
         form.reinit(n + coupled, n + coupled);
-        double *A = &tangents[p * n * n];
         for (unsigned int i = 0; i < n; ++i)
           for (unsigned int j = 0; j < n; ++j)
-            form(i, j) = A[i * n + j];
+            form(i, j) = tangent(p, i, j);
         for (unsigned int i = 0; coupled && i < n; ++i)
           form(i, n) = form(n, i) = average.coupling[p * n + i];
         if (coupled)
           form(n, n) = average.square[p];
         make_positive(form);
-        for (unsigned int i = 0; i < n; ++i)
-          for (unsigned int j = 0; j < n; ++j)
-            A[i * n + j] = form(i, j);
+        for (unsigned int k = 0; k < entries.size(); ++k)
+          tangents[p * entries.size() + k] =
+            form(entries[k] / n, entries[k] % n);
         if (!coupled)
           continue;
         for (unsigned int i = 0; i < n; ++i)

@@ -164,8 +164,7 @@ namespace impm
   void
   VolumeAverage<dim>::share_pressure(const std::vector<double> &gradients,
                                      const bool                 with_tangent,
-                                     std::vector<double>       &stresses,
-                                     std::vector<double>       &tangents)
+                                     const AddShare            &add)
   {
     using List             = typename Kinematics<dim>::template List<Lanes>;
     const unsigned int n_g = kinematics.size;
@@ -183,27 +182,27 @@ namespace impm
              batch.load(gradients, n_g, gradient.data());
              const auto inverse = invert(kinematics.deformation(gradient.data()));
              kinematics.carry_back(e, inverse, share, m.data());
-             batch.load(stresses, n_g, stress.data());
              for (unsigned int a = 0; a < n_g; ++a)
-          stress[a] += pressure * m[a];
-        batch.store(stress.data(), stresses, n_g);
-             if (!with_tangent)
-          continue;
-        // From the second derivative of ln theta: share (tr g tr h - tr(g h)).
-             batch.store(m.data(), mean, n_g);
-             batch.load(tangents, n_g * n_g, A.data());
-             for (unsigned int a = 0; a < n_g; ++a)
-          for (unsigned int b = 0; b < n_g; ++b)
-            A[a * n_g + b] += pressure / share * m[a] * m[b];
-        for (unsigned int i = 0; i < dim; ++i)
-          for (unsigned int j = 0; j < dim; ++j)
-            for (unsigned int k = 0; k < dim; ++k)
-              for (unsigned int l = 0; l < dim; ++l)
-                A[(dim * i + j) * n_g + dim * k + l] -=
-                  pressure * share * inverse[j][k] * inverse[l][i];
-        if (kinematics.axisymmetric)
-          A[n_g * n_g - 1] -= pressure * share * inverse[2][2] * inverse[2][2];
-        batch.store(A.data(), tangents, n_g * n_g);
+          stress[a] = pressure * m[a];
+        if (with_tangent)
+          {
+                 // From the second derivative of ln theta:
+            // share (tr g tr h - tr(g h)).
+            batch.store(m.data(), mean, n_g);
+            for (unsigned int a = 0; a < n_g; ++a)
+              for (unsigned int b = 0; b < n_g; ++b)
+                A[a * n_g + b] = pressure / share * m[a] * m[b];
+            for (unsigned int i = 0; i < dim; ++i)
+              for (unsigned int j = 0; j < dim; ++j)
+                for (unsigned int k = 0; k < dim; ++k)
+                  for (unsigned int l = 0; l < dim; ++l)
+                    A[(dim * i + j) * n_g + dim * k + l] -=
+                      pressure * share * inverse[j][k] * inverse[l][i];
+            if (kinematics.axisymmetric)
+              A[n_g * n_g - 1] -=
+                pressure * share * inverse[2][2] * inverse[2][2];
+          }
+        add(batch, stress, A);
       }
   }
 

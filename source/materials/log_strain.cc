@@ -145,13 +145,16 @@ namespace impm::LogStrain
               const Number c = 1. / sqrt(t * t + 1.), s = t * c;
               values[p] -= t * twist;
               values[q] += t * twist;
-              shear[r]          = select(turns, Number(0.), twist);
-              const Number at_p = shear[q], at_q = shear[p];
-              shear[q]        = c * at_p - s * at_q;
-              shear[p]        = s * at_p + c * at_q;
-              const auto axis = axes[p];
-              axes[p]         = c * axis - s * axes[q];
-              axes[q]         = s * axis + c * axes[q];
+              shear[r] = select(turns, Number(0.), twist);
+              // c = 1 - s half, which leaves what hardly turns alone
+              const Number half   = s / (1. + c);
+              const auto   rotate = [&](auto &at_p, auto &at_q) {
+                const auto old = at_p;
+                at_p           = at_p - s * (at_q + half * at_p);
+                at_q           = at_q + s * (old - half * at_q);
+              };
+              rotate(shear[q], shear[p]);
+              rotate(axes[p], axes[q]);
             }
           if (is_done)
             return true;

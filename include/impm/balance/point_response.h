@@ -52,10 +52,14 @@ namespace impm
     void
     project_tangent();
 
-    const double *
-    tangent(const unsigned int point) const
+    /** An entry of the tangent at a point (N m). */
+    double
+    tangent(const unsigned int point,
+            const unsigned int a,
+            const unsigned int b) const
     {
-      return &tangents[point * kinematics.size * kinematics.size];
+      return tangents[point * entries.size() +
+                      place_of_entry[a * kinematics.size + b]];
     }
 
     /**
@@ -137,10 +141,13 @@ namespace impm
     const bool                 is_plane_stress;
     double                     dt;
     unsigned long             &n_evaluations;
-    std::vector<double>        tangents, histories;
-    const unsigned int         n_stress; ///< values of a stress, if carried
-    std::vector<double>        end_stresses;
-    std::vector<double>        thickening; ///< dF_33 in plane stress
+    /** Of a tangent: those that are stored, all or, where every law has a
+     * symmetric one, its lower triangle, as row * size + column; and where. */
+    std::vector<unsigned int> entries, place_of_entry;
+    std::vector<double>       tangents, histories;
+    const unsigned int        n_stress; ///< values of a stress, if carried
+    std::vector<double>       end_stresses;
+    std::vector<double>       thickening; ///< dF_33 in plane stress
   };
 } // namespace impm
 

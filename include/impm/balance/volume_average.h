@@ -5,6 +5,7 @@
 #include <impm/balance/point_batch.h>
 #include <impm/points/material_points.h>
 
+#include <functional>
 #include <vector>
 
 namespace impm
@@ -76,12 +77,17 @@ namespace impm
                       Material::BasicResponse<Number>    &response,
                       Number                             *matrix);
 
+    /** Points, and what is added to their stresses and tangents. */
+    using AddShare = std::function<
+      void(const PointBatch<Lanes> &,
+           const typename Kinematics<dim>::template List<Lanes> &,
+           const typename Kinematics<dim>::template Matrix<Lanes> &)>;
+
     /** Gives all points their share of the mean pressure of their cell. */
     void
     share_pressure(const std::vector<double> &gradients,
                    bool                       with_tangent,
-                   std::vector<double>       &stresses,
-                   std::vector<double>       &tangents);
+                   const AddShare            &add);
 
     /** Adds what couples the points to A g. */
     void

@@ -132,6 +132,18 @@ namespace impm
                          });
     }
 
+    /** Whether all of them have, with whatever laws. */
+    bool
+    have_symmetric_tangents() const
+    {
+      return std::all_of(materials.begin(),
+                         materials.end(),
+                         [](const auto &material) {
+                           return !material ||
+                                  material->has_symmetric_tangent();
+                         });
+    }
+
     /**
      * Largest speed (m/s) at which news travel: of elastic waves at rest, plus
      * that of the fastest point. Collective.

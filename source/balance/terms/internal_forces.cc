@@ -127,10 +127,9 @@ namespace impm
     constexpr unsigned int n_list   = filled_up(n_values);
     // columns of A, one per value of a gradient
     std::array<std::array<double, n_list>, n_values> A{};
-    const double *tangent = response.tangent(point);
     for (unsigned int a = 0; a < n_gradients; ++a)
       for (unsigned int b = 0; b < n_gradients; ++b)
-        A[b][a] = tangent[a * n_gradients + b];
+        A[b][a] = response.tangent(point, a, b);
 
     double *sum = sums.data();
     for (unsigned int m = 0; m < n; ++m, sum += dim * dim * n)

@@ -94,7 +94,7 @@ namespace impm
   }
 
   LinearMap
-  factorize(const SparseMatrix &matrix)
+  make_lu(const SparseMatrix &matrix)
   {
     const auto factors = std::make_shared<Factors>();
     try

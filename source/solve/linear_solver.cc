@@ -67,7 +67,7 @@ namespace impm
   LinearSolver::take_tangent()
   {
     ++system.counts->tangents;
-    inverse = {};
+    is_factorized = false;
     if (needs_matrix)
       assemble();
     if (spec.linear_solver == LinearSolverKind::direct)
@@ -201,12 +201,16 @@ namespace impm
           solution = 0;
         }
     // What has been factorized must stay: a tangent may be solved with again.
-    if (!needs_matrix && !inverse.vmult)
+    if (!needs_matrix && !is_factorized)
       assemble();
     TimerOutput::Scope scope(timer, "direct solver");
-    if (!inverse.vmult)
-      inverse = factorize(*matrix);
-    inverse.vmult(solution, right_side);
+    if (!direct)
+      direct =
+        std::make_unique<DirectSolver>(*matrix, spec.has_symmetric_matrix);
+    if (!is_factorized)
+      direct->factorize();
+    is_factorized = true;
+    direct->solve(solution, right_side);
     return answer(is_direct ? 1 : spec.linear_iterations);
   }
 } // namespace impm

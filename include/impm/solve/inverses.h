@@ -26,12 +26,11 @@ namespace impm
            const std::vector<std::vector<double>> &modes);
 
   /**
-   * The inverse of a matrix that stays as it is, by factorization (Amesos,
-   * KLU). Throws LinearizationError as make_amg() does, when applied, too.
-   * Collective.
+   * The inverse of a matrix that stays as it is, as L U (Amesos, KLU). Throws
+   * LinearizationError as make_amg() does, when applied, too. Collective.
    */
   LinearMap
-  factorize(const SparseMatrix &matrix);
+  make_lu(const SparseMatrix &matrix);
 } // namespace impm
 
 #endif

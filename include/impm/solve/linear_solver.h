@@ -5,7 +5,7 @@
 
 #include <impm/input/sections/solver.h>
 #include <impm/solve/difference_quotient.h>
-#include <impm/solve/inverses.h>
+#include <impm/solve/direct_solver.h>
 
 namespace impm
 {
@@ -74,7 +74,8 @@ namespace impm
     bool         amg_is_old = false, amg_is_worn = false;
     unsigned int iterations_when_new = 0; ///< of a solve
     unsigned int place_of_amg        = 0; ///< of the matrix that it knows
-    LinearMap    inverse; ///< of the matrix as it is, once factorized
+    std::unique_ptr<DirectSolver> direct; ///< once it was needed
+    bool is_factorized = false;           ///< the matrix as it is
 
     // Compact vectors, but for those of operators that know full ones.
     Vector solution, right_side, inverse_diagonal, full_src, full_dst;

@@ -145,7 +145,7 @@ namespace impm
     template <int dim>
     void
     check_symmetry(const Section     &section,
-                   const SolverSpec  &solver,
+                   SolverSpec        &solver,
                    const TimeSpec    &time,
                    const Bodies<dim> &bodies)
     {
@@ -155,6 +155,7 @@ namespace impm
           what = "the law of body '" + body.name + "'";
       if (time.momentum_formulation)
         what = "the momentum formulation";
+      solver.has_symmetric_matrix = what.empty();
       if (what.empty())
         return;
       const std::string flaw =

@@ -13,7 +13,8 @@ namespace impm
    * Solves the linear systems of Newton's method in one step: CG or GMRES of
    * deal.II with AMG, Jacobi or no preconditioner, or a direct solver, which
    * also takes over, counted, where an iterative one fails, unless what it has
-   * then is good enough for Newton's method to go on. All is collective.
+   * then is good enough for Newton's method to go on. One that was chosen
+   * automatically and fails is not tried again in this step. All is collective.
    */
   class LinearSolver
   {
@@ -66,8 +67,9 @@ namespace impm
     dealii::TimerOutput &timer;
     DifferenceQuotient   quotient;
 
-    const bool                    needs_matrix; ///< of every tangent
     const Unknowns                unknowns;
+    LinearSolverKind              kind;         ///< anything but automatic
+    const bool                    needs_matrix; ///< of every tangent
     std::unique_ptr<SparseMatrix> matrix;
     LinearMap                     preconditioner; ///< if there is one
     // The AMG hierarchy: of an earlier tangent, not good enough for the next.

@@ -31,6 +31,7 @@ namespace impm
 
   enum class LinearSolverKind
   {
+    automatic, ///< see choose_linear_solver()
     cg,
     gmres,
     direct
@@ -53,7 +54,7 @@ namespace impm
     unsigned int       newton_iterations;
     unsigned int       bfgs_updates = 0; ///< of a tangent; 0: Newton's method
     bool               line_search;
-    LinearSolverKind   linear_solver        = LinearSolverKind::cg;
+    LinearSolverKind   linear_solver        = LinearSolverKind::automatic;
     double             linear_tolerance     = 0;
     unsigned int       linear_iterations    = 0;
     unsigned int       gmres_directions     = 0;

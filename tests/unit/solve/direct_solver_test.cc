@@ -5,13 +5,10 @@
 
 #include "scene_fixture.h"
 
-using namespace dealii;
 using namespace impm;
 
 namespace
 {
-  using impm::Vector;
-
   const Overrides press = {"Boundary conditions/bottom/Type=fixed",
                            "Boundary conditions/top/Type=displacement",
                            "Boundary conditions/top/Value=0; -0.05*t"};

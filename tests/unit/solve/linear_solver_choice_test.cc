@@ -5,12 +5,10 @@
 
 #include "scene_fixture.h"
 
-using namespace dealii;
 using namespace impm;
 
 namespace
 {
-  using impm::Vector;
   using Kind = LinearSolverKind;
 
   SolverSpec
@@ -34,9 +32,9 @@ namespace
 
   struct Outcome
   {
-    Vector      u;
-    unsigned    linear_iterations;
-    std::string name;
+    Vector       u;
+    unsigned int linear_iterations;
+    std::string  name;
   };
 
   Outcome
@@ -74,7 +72,7 @@ namespace
 TEST(LinearSolverChoice, BySizeAndDimension)
 {
   const auto spec = automatic();
-  for (const unsigned int dim : {2, 3})
+  for (const unsigned int dim : {2u, 3u})
     {
       const unsigned int n = largest_coarse_system(dim);
       EXPECT_EQ(choose_linear_solver(spec, dim, 1), Kind::direct);

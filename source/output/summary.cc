@@ -36,6 +36,7 @@ namespace impm
     json["bytes_per_point"] = bytes_per_point;
     json["points_per_cell"] = {{"smallest", points_per_cell.smallest},
                                {"mean", points_per_cell.mean}};
+    json["linear_solver"]   = linear_solver;
     json["steps"]           = steps;
     json["time"]            = time;
     for (const auto &[name, count] : counts)

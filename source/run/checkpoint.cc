@@ -125,8 +125,8 @@ namespace impm
     archive &time &total &since_row &control &work &resampled &best_imbalance
       &adapted_step &off_grid &pictures &history &reference &warnings
         &face_holds &counts.operator_applications &counts.tangents &counts
-          .hierarchies                                             &counts
-          .solver_fallbacks &evaluations &seconds                  &seconds_by;
+          .hierarchies &counts.solver_fallbacks &counts.direct_systems &counts
+          .iterative_systems &evaluations &seconds &seconds_by;
     if (!Archive::is_loading::value)
       return;
     seconds_before = seconds;

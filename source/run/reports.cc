@@ -1,6 +1,7 @@
 #include <impm/balance/terms/loads.h>
 #include <impm/output/summary.h>
 #include <impm/run/simulation.h>
+#include <impm/solve/linear_solver_choice.h>
 
 #include <algorithm>
 #include <sstream>
@@ -21,7 +22,8 @@ namespace impm
          << " cells, " << grid.discretization()->dof_handler().n_dofs()
          << " unknowns\n"
          << "  points: " << points.sorted.n_global() << ", a cell "
-         << to_string(points_per_cell(grid, points)) << '\n';
+         << to_string(points_per_cell(grid, points)) << '\n'
+         << "  linear solver: " << name_linear_solver() << '\n';
     const auto counts =
       count_points_under_tractions(scene.loads.tractions, points);
     for (unsigned int t = 0; t < counts.size(); ++t)
@@ -35,6 +37,15 @@ namespace impm
   }
 
   template <int dim>
+  std::string
+  Simulation<dim>::name_linear_solver() const
+  {
+    return scene.time.is_explicit() ?
+             "none" :
+             describe_linear_solver(scene.solver, dim, counts);
+  }
+
+  template <int dim>
   void
   Simulation<dim>::write_summary(const std::string &status,
                                  const FinerRuns   &finer_runs)
@@ -42,6 +53,7 @@ namespace impm
     RunSummary summary;
     summary.scene           = scene_name;
     summary.status          = status;
+    summary.linear_solver   = name_linear_solver();
     summary.dim             = dim;
     summary.points          = points.sorted.n_global();
     summary.bytes_per_point = points.bytes_per_point();
@@ -172,6 +184,10 @@ namespace impm
   Simulation<2>::describe();
   template void
   Simulation<3>::describe();
+  template std::string
+  Simulation<2>::name_linear_solver() const;
+  template std::string
+  Simulation<3>::name_linear_solver() const;
   template void
   Simulation<2>::write_summary(const std::string &, const FinerRuns &);
   template void

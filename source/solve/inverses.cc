@@ -58,8 +58,8 @@ namespace impm
     data.set_parameters(parameters, unused, trilinos_matrix);
     const unsigned int n_components = matrix.unknowns.n_components;
     parameters.set("PDE equations", static_cast<int>(n_components));
-    // To factorize more is dear in space, not in the plane.
-    parameters.set("coarse: max size", n_components == 3 ? 500 : 2000);
+    parameters.set("coarse: max size",
+                   static_cast<int>(largest_coarse_system(n_components)));
     parameters.set("null space: type", "pre-computed");
     parameters.set("null space: dimension", static_cast<int>(modes.size()));
     parameters.set("null space: vectors", amg->modes.data());
@@ -94,7 +94,7 @@ namespace impm
   }
 
   LinearMap
-  factorize(const SparseMatrix &matrix)
+  make_lu(const SparseMatrix &matrix)
   {
     const auto factors = std::make_shared<Factors>();
     try

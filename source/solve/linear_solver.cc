@@ -6,6 +6,7 @@
 #include <impm/base/compat.h>
 #include <impm/base/exceptions.h>
 #include <impm/solve/linear_solver.h>
+#include <impm/solve/linear_solver_choice.h>
 
 namespace impm
 {
@@ -18,11 +19,14 @@ namespace impm
     , system(system)
     , timer(timer)
     , quotient(system, spec.difference_step)
-    , needs_matrix(spec.linear_solver == LinearSolverKind::direct ||
+    , unknowns(system.make_unknowns())
+    , kind(choose_linear_solver(spec, unknowns.n_components, unknowns.size()))
+    , needs_matrix(kind == LinearSolverKind::direct ||
                    spec.tangent == TangentKind::matrix ||
                    spec.preconditioner == PreconditionerKind::amg)
-    , unknowns(system.make_unknowns())
   {
+    ++(kind == LinearSolverKind::direct ? system.counts->direct_systems :
+                                          system.counts->iterative_systems);
     for (Vector *vector : {&solution, &right_side, &inverse_diagonal})
       unknowns.initialize(*vector);
     if (spec.tangent != TangentKind::matrix ||
@@ -67,10 +71,10 @@ namespace impm
   LinearSolver::take_tangent()
   {
     ++system.counts->tangents;
-    inverse = {};
+    is_factorized = false;
     if (needs_matrix)
       assemble();
-    if (spec.linear_solver == LinearSolverKind::direct)
+    if (kind == LinearSolverKind::direct)
       return;
     if (spec.preconditioner == PreconditionerKind::amg)
       {
@@ -166,7 +170,7 @@ namespace impm
       else
         solver.solve(tangent, solution, right_side, PreconditionIdentity());
     };
-    if (spec.linear_solver == LinearSolverKind::cg)
+    if (kind == LinearSolverKind::cg)
       run(SolverCG<Vector>(control));
     else
       {
@@ -181,7 +185,7 @@ namespace impm
   unsigned int
   LinearSolver::solve(Vector &x, const Vector &b)
   {
-    const bool is_direct = spec.linear_solver == LinearSolverKind::direct;
+    const bool is_direct = kind == LinearSolverKind::direct;
     solution             = 0;
     unknowns.pack(b, right_side);
     const auto answer = [&](const unsigned int n_iterations) {
@@ -198,15 +202,21 @@ namespace impm
           if (spec.accept_unfinished)
             throw LinearizationError("the linear solver broke down");
           ++system.counts->solver_fallbacks;
+          if (spec.linear_solver == LinearSolverKind::automatic && needs_matrix)
+            kind = LinearSolverKind::direct;
           solution = 0;
         }
     // What has been factorized must stay: a tangent may be solved with again.
-    if (!needs_matrix && !inverse.vmult)
+    if (!needs_matrix && !is_factorized)
       assemble();
     TimerOutput::Scope scope(timer, "direct solver");
-    if (!inverse.vmult)
-      inverse = factorize(*matrix);
-    inverse.vmult(solution, right_side);
+    if (!direct)
+      direct =
+        std::make_unique<DirectSolver>(*matrix, spec.has_symmetric_matrix);
+    if (!is_factorized)
+      direct->factorize();
+    is_factorized = true;
+    direct->solve(solution, right_side);
     return answer(is_direct ? 1 : spec.linear_iterations);
   }
 } // namespace impm

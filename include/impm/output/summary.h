@@ -26,12 +26,12 @@ namespace impm
   /** summary.json: what a run was, what it cost and what it gave. */
   struct RunSummary
   {
-    std::string                                        scene, status;
-    int                                                dim;
-    unsigned long                                      points, bytes_per_point;
-    PointsPerCell                                      points_per_cell;
-    unsigned int                                       steps;
-    double                                             time;
+    std::string   scene, status, linear_solver;
+    int           dim;
+    unsigned long points, bytes_per_point;
+    PointsPerCell points_per_cell;
+    unsigned int  steps;
+    double        time;
     std::vector<std::pair<std::string, unsigned long>> counts;
     std::vector<std::pair<std::string, double>>        figures; ///< last row
     std::map<std::string, double> phases; ///< wall seconds of rank 0

@@ -148,6 +148,10 @@ namespace impm
     std::map<std::string, double>
     phases() const;
 
+    /** What solves the linear systems. */
+    std::string
+    name_linear_solver() const;
+
     void
     write_summary(const std::string &status, const FinerRuns &finer_runs = {});
 

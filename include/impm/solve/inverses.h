@@ -14,6 +14,14 @@ namespace impm
     std::function<void(Vector &dst, const Vector &src)> vmult;
   };
 
+  /** Unknowns of a system that AMG factorizes rather than make it coarser: to
+   * factorize more is dear in space, not in the plane. */
+  inline unsigned int
+  largest_coarse_system(const unsigned int dim)
+  {
+    return dim == 3 ? 500 : 2000;
+  }
+
   /**
    * Smoothed aggregation (ML) of nodes for elastic bodies; `modes` are what
    * costs hardly any energy, by owned compact index. The matrix has to stay
@@ -26,12 +34,11 @@ namespace impm
            const std::vector<std::vector<double>> &modes);
 
   /**
-   * The inverse of a matrix that stays as it is, by factorization (Amesos,
-   * KLU). Throws LinearizationError as make_amg() does, when applied, too.
-   * Collective.
+   * The inverse of a matrix that stays as it is, as L U (Amesos, KLU). Throws
+   * LinearizationError as make_amg() does, when applied, too. Collective.
    */
   LinearMap
-  factorize(const SparseMatrix &matrix);
+  make_lu(const SparseMatrix &matrix);
 } // namespace impm
 
 #endif

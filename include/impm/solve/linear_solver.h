@@ -5,7 +5,7 @@
 
 #include <impm/input/sections/solver.h>
 #include <impm/solve/difference_quotient.h>
-#include <impm/solve/inverses.h>
+#include <impm/solve/direct_solver.h>
 
 namespace impm
 {
@@ -13,7 +13,8 @@ namespace impm
    * Solves the linear systems of Newton's method in one step: CG or GMRES of
    * deal.II with AMG, Jacobi or no preconditioner, or a direct solver, which
    * also takes over, counted, where an iterative one fails, unless what it has
-   * then is good enough for Newton's method to go on. All is collective.
+   * then is good enough for Newton's method to go on. One that was chosen
+   * automatically and fails is not tried again in this step. All is collective.
    */
   class LinearSolver
   {
@@ -66,15 +67,17 @@ namespace impm
     dealii::TimerOutput &timer;
     DifferenceQuotient   quotient;
 
-    const bool                    needs_matrix; ///< of every tangent
     const Unknowns                unknowns;
+    LinearSolverKind              kind;         ///< anything but automatic
+    const bool                    needs_matrix; ///< of every tangent
     std::unique_ptr<SparseMatrix> matrix;
     LinearMap                     preconditioner; ///< if there is one
     // The AMG hierarchy: of an earlier tangent, not good enough for the next.
     bool         amg_is_old = false, amg_is_worn = false;
     unsigned int iterations_when_new = 0; ///< of a solve
     unsigned int place_of_amg        = 0; ///< of the matrix that it knows
-    LinearMap    inverse; ///< of the matrix as it is, once factorized
+    std::unique_ptr<DirectSolver> direct; ///< once it was needed
+    bool is_factorized = false;           ///< the matrix as it is
 
     // Compact vectors, but for those of operators that know full ones.
     Vector solution, right_side, inverse_diagonal, full_src, full_dst;

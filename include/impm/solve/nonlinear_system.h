@@ -13,6 +13,8 @@ namespace impm
     unsigned int  tangents              = 0; ///< that were taken
     unsigned int  hierarchies           = 0; ///< of AMG that were made
     unsigned int  solver_fallbacks      = 0; ///< to the direct solver
+    // Steps, or attempts at them, by what their linear systems are meant for.
+    unsigned int direct_systems = 0, iterative_systems = 0;
   };
 
   /**

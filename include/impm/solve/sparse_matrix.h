@@ -14,7 +14,8 @@ namespace impm
 {
   /**
    * The distributed matrix of a linear system, filled block by block. This and
-   * what solves with it (inverses.h) is all that the program knows of Trilinos.
+   * what solves with it (inverses.h, ldl.h) is all that the program knows of
+   * Trilinos.
    *
    * Blocks are of whole nodes. Where each of them goes is found once: those who
    * fill the matrix must give the blocks in the order in which they gave them

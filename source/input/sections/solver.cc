@@ -14,7 +14,8 @@ namespace impm
 
     const Choice<LinearSolverKind>
       linear_solvers("Linear solver",
-                     {{"CG", LinearSolverKind::cg},
+                     {{"automatic", LinearSolverKind::automatic},
+                      {"CG", LinearSolverKind::cg},
                       {"GMRES", LinearSolverKind::gmres},
                       {"direct", LinearSolverKind::direct}});
 
@@ -99,7 +100,10 @@ namespace impm
     {
       section.add(linear_solvers,
                   solver.linear_solver,
-                  "For the Newton steps.");
+                  "For the Newton steps. Automatic: direct for small systems, "
+                  "else CG or, where the matrix is not symmetric, GMRES; the "
+                  "latter two in any case where another preconditioner than "
+                  "AMG or another operator than the matrix is asked for.");
       if (solver.linear_solver != LinearSolverKind::direct)
         {
           section.add("Linear tolerance",
@@ -134,7 +138,8 @@ namespace impm
                         "h of the difference quotient, relative to the norm "
                         "of the increment.");
         }
-      if (section.may_be(linear_solvers, LinearSolverKind::gmres))
+      if (section.may_be(linear_solvers, LinearSolverKind::automatic) ||
+          section.may_be(linear_solvers, LinearSolverKind::gmres))
         section.add("GMRES directions",
                     solver.gmres_directions,
                     {"50", 2},
@@ -145,7 +150,7 @@ namespace impm
     template <int dim>
     void
     check_symmetry(const Section     &section,
-                   const SolverSpec  &solver,
+                   SolverSpec        &solver,
                    const TimeSpec    &time,
                    const Bodies<dim> &bodies)
     {
@@ -155,6 +160,7 @@ namespace impm
           what = "the law of body '" + body.name + "'";
       if (time.momentum_formulation)
         what = "the momentum formulation";
+      solver.has_symmetric_matrix = what.empty();
       if (what.empty())
         return;
       const std::string flaw =

@@ -123,6 +123,7 @@ namespace
     for (const std::string name : {"newton_iterations",
                                    "linear_iterations",
                                    "tangents",
+                                   "linear_solver",
                                    "stress_evaluations",
                                    "figures",
                                    "warnings",

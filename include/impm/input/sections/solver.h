@@ -31,6 +31,7 @@ namespace impm
 
   enum class LinearSolverKind
   {
+    automatic, ///< see choose_linear_solver()
     cg,
     gmres,
     direct
@@ -53,13 +54,14 @@ namespace impm
     unsigned int       newton_iterations;
     unsigned int       bfgs_updates = 0; ///< of a tangent; 0: Newton's method
     bool               line_search;
-    LinearSolverKind   linear_solver     = LinearSolverKind::cg;
-    double             linear_tolerance  = 0;
-    unsigned int       linear_iterations = 0;
-    unsigned int       gmres_directions  = 0;
-    PreconditionerKind preconditioner    = PreconditionerKind::none;
-    TangentKind        tangent           = TangentKind::matrix;
-    double             difference_step   = 0;
+    LinearSolverKind   linear_solver        = LinearSolverKind::automatic;
+    double             linear_tolerance     = 0;
+    unsigned int       linear_iterations    = 0;
+    unsigned int       gmres_directions     = 0;
+    PreconditionerKind preconditioner       = PreconditionerKind::none;
+    TangentKind        tangent              = TangentKind::matrix;
+    double             difference_step      = 0;
+    bool               has_symmetric_matrix = true; ///< in this scene
     /** An iterative solver that ends early leaves the rest to Newton's method
      * rather than to the direct solver. */
     bool accept_unfinished = false;

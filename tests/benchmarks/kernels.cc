@@ -411,13 +411,13 @@ namespace
                          elastic->dt);
       });
 
-      // State of the points, read and written, and footprints; laws and forces
-      // at start and end, gradients, mass and velocity to the nodes, two
-      // vectors back.
+      // State of the points, read and written, and footprints; a law, which
+      // leaves the forces of the next step, gradients and forces, mass and
+      // velocity to the nodes, two vectors back.
       const double state = 2 * moving->points.bytes_per_point();
       add_kernel("explicit step",
                  per_point(state + shape,
-                           2 * elastic_flops + 3 * slope_flops +
+                           elastic_flops + 2 * slope_flops +
                              n_entries * n_nodes * (dim + n_g + 8 * dim)),
                  [=]() {
                    moving->solve(full[0]);
@@ -548,12 +548,20 @@ main(int argc, char **argv)
     return argc > i ? argv[i] : otherwise;
   };
   const std::string dimension = argument(1, "2"), method = argument(2, "MPM");
-  // In the plane, fewer would fit into a cache.
-  const double n_points =
-    std::stod(argument(3, dimension == "3" ? "216000" : "1000000"));
-  if (dimension == "3")
-    run<3>(method, n_points);
-  else
-    run<2>(method, n_points);
+  try
+    {
+      // In the plane, fewer would fit into a cache.
+      const double n_points =
+        std::stod(argument(3, dimension == "3" ? "216000" : "1000000"));
+      if (dimension == "3")
+        run<3>(method, n_points);
+      else
+        run<2>(method, n_points);
+    }
+  catch (const std::exception &error)
+    {
+      std::fprintf(stderr, "kernels: %s\n", error.what());
+      return 1;
+    }
   return 0;
 }

@@ -106,6 +106,7 @@ namespace impm
   {
     TimerOutput::Scope scope(timer, "preconditioner");
     ++system.counts->hierarchies;
+    preconditioner = {}; // two at a time were the peak of a run's memory
     preconditioner = make_amg(*matrix, system.near_null_space(unknowns));
     amg_is_old     = false;
     place_of_amg   = matrix->place_of_entries();

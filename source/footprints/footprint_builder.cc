@@ -239,8 +239,7 @@ namespace impm
               sum = cut<dim>(cell, discretization, p, lower, upper, pieces);
             else
               for (const auto &other : cells)
-                sum +=
-                  cut(discretization.with_dofs(other), p, lower, upper, pieces);
+                sum += cut(other, discretization, p, lower, upper, pieces);
             for (unsigned int i = first; i < pieces.size(); ++i)
               pieces[i].weight /= sum;
           }

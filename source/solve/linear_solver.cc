@@ -57,7 +57,8 @@ namespace impm
     if (!matrix)
       {
         TimerOutput::Scope scope(timer, "sparsity");
-        matrix = system.make_matrix(unknowns);
+        matrix                      = system.make_matrix(unknowns);
+        system.counts->matrix_bytes = matrix->memory_consumption();
       }
     TimerOutput::Scope scope(timer, "assembly");
     system.assemble(*matrix);

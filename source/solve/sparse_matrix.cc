@@ -1,3 +1,4 @@
+#include <impm/base/memory.h>
 #include <impm/solve/trilinos_matrix.h>
 
 #include <Epetra_CrsGraph.h>
@@ -114,8 +115,10 @@ namespace impm
     const unsigned int n_components = unknowns.n_components;
     const auto        &first        = unknowns.first;
     const unsigned int n_rows       = unknowns.n_owned();
-    const auto         pairs        = couple_nodes();
-    const auto         add_columns  = [&](const unsigned int node, auto add) {
+    blocks.shrink_to_fit();
+    block_nodes.shrink_to_fit();
+    const auto pairs       = couple_nodes();
+    const auto add_columns = [&](const unsigned int node, auto add) {
       const auto row = first[node] / n_components;
       for (unsigned int k = 0; k < pairs.row_length(row); ++k)
         add(n_components * pairs.column_number(row, k));
@@ -389,6 +392,14 @@ namespace impm
   SparseMatrix::vmult(Vector &dst, const Vector &src) const
   {
     trilinos->matrix.vmult(dst, src);
+  }
+
+  std::size_t
+  SparseMatrix::memory_consumption() const
+  {
+    return trilinos->matrix.memory_consumption() +
+           bytes_of(blocks, block_nodes, places, diagonal_places) +
+           bytes_of(remote_rows.values, remote_columns);
   }
 
   void

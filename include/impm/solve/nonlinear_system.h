@@ -13,6 +13,7 @@ namespace impm
     unsigned int  tangents              = 0; ///< that were taken
     unsigned int  hierarchies           = 0; ///< of AMG that were made
     unsigned int  solver_fallbacks      = 0; ///< to the direct solver
+    std::size_t   matrix_bytes          = 0; ///< of the last one, on this rank
   };
 
   /**

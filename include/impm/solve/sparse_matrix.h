@@ -71,6 +71,10 @@ namespace impm
       return n_places;
     }
 
+    /** Of this rank (bytes). */
+    std::size_t
+    memory_consumption() const;
+
     /** Becomes A D B, with a diagonal matrix D. Collective. */
     void
     multiply(const SparseMatrix &A, const Vector &D, const SparseMatrix &B);

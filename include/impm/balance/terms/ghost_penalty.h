@@ -4,6 +4,7 @@
 #include <deal.II/fe/mapping.h>
 
 #include <impm/balance/terms/term.h>
+#include <impm/base/memory.h>
 #include <impm/grid/populated_cells.h>
 
 #include <array>
@@ -84,6 +85,13 @@ namespace impm
 
     void
     add_matrix(bool only_pattern, const TakeBlock &take) const override;
+
+    /** (bytes) */
+    std::size_t
+    memory_consumption() const
+    {
+      return bytes_of(faces);
+    }
 
     std::vector<Face> faces; ///< those that this rank works on
   };

@@ -223,6 +223,17 @@ namespace impm
   }
 
   template <int dim>
+  MemoryByOwner
+  StepProblem<dim>::memory_by_owner() const
+  {
+    MemoryByOwner bytes;
+    bytes["footprints"] = footprints.memory_consumption();
+    if (ghost_penalty)
+      bytes["ghost_penalty"] = ghost_penalty->memory_consumption();
+    return bytes;
+  }
+
+  template <int dim>
   void
   StepProblem<dim>::explicit_increment(Vector &u) const
   {

@@ -1,5 +1,3 @@
-#include <deal.II/grid/grid_tools.h>
-
 #include <impm/footprints/footprint_builder.h>
 
 #include <algorithm>
@@ -54,11 +52,12 @@ namespace impm
      */
     template <int dim>
     double
-    cut(const typename Discretization<dim>::CellIterator &cell,
-        const unsigned int                                p,
-        const Point<dim>                                 &lower,
-        const Point<dim>                                 &upper,
-        std::vector<typename Footprints<dim>::Piece>     &pieces)
+    cut(const typename CellsAtVertices<dim>::CellIterator &cell,
+        const Discretization<dim>                         &discretization,
+        const unsigned int                                 p,
+        const Point<dim>                                  &lower,
+        const Point<dim>                                  &upper,
+        std::vector<typename Footprints<dim>::Piece>      &pieces)
     {
       // Where box and cell only touch, round-off decides.
       const double sliver = 1e-9;
@@ -76,7 +75,7 @@ namespace impm
           weight *= share;
           centroid[d] = (0.5 * (from + to) - start) / extent;
         }
-      pieces.push_back({p, cell, weight, centroid});
+      pieces.push_back({p, discretization.with_dofs(cell), weight, centroid});
       return weight;
     }
   } // namespace
@@ -153,29 +152,18 @@ namespace impm
   }
 
   template <int dim>
-  const typename FootprintBuilder<dim>::Surroundings &
-  FootprintBuilder<dim>::surroundings_of(
-    const CellIterator &cell, const Discretization<dim> &discretization)
+  void
+  FootprintBuilder<dim>::find_surroundings(
+    const CellIterator        &cell,
+    const Discretization<dim> &discretization,
+    Surroundings              &result)
   {
     if (epoch != discretization.numbering->epoch)
       {
-        const auto &triangulation = discretization.numbering->triangulation;
-        epoch                     = discretization.numbering->epoch;
-        vertex_to_cells = GridTools::vertex_to_cell_map(triangulation);
-        surroundings.assign(triangulation.n_active_cells(), Surroundings());
+        epoch = discretization.numbering->epoch;
+        cells_at_vertices.emplace(discretization.numbering->triangulation);
       }
-    auto &result = surroundings[cell->active_cell_index()];
-    if (result.cells.empty())
-      {
-        std::set<TriaIterator> near;
-        for (const unsigned int v : cell->vertex_indices())
-          near.insert(vertex_to_cells[cell->vertex_index(v)].begin(),
-                      vertex_to_cells[cell->vertex_index(v)].end());
-        for (const auto &other : near)
-          if (!other->is_artificial())
-            result.cells.push_back(discretization.with_dofs(other));
-      }
-    // A grid that follows a boundary stretches.
+    cells_at_vertices->find_around(cell, result.cells);
     for (unsigned int d = 0; d < dim; ++d)
       {
         result.start[d] = cell->vertex(0)[d];
@@ -184,7 +172,6 @@ namespace impm
         for (const auto &other : result.cells)
           result.reach[d] = std::min(result.reach[d], cell_extent(other, d));
       }
-    return result;
   }
 
   template <int dim>
@@ -202,9 +189,9 @@ namespace impm
       keeps_motion ? layout.offset("unit_position") : 0;
     const auto offset_half =
       keeps_motion && has_boxes ? layout.offset("half_extents") : 0;
-    unsigned int        p      = 0;
-    const Surroundings *around = nullptr;
-    CellIterator        current;
+    unsigned int p = 0;
+    Surroundings around;
+    CellIterator current; ///< which they are of
     for (const auto &particle : points.sorted.particles)
       {
         const auto cell =
@@ -219,12 +206,12 @@ namespace impm
         const unsigned int first  = pieces.size();
         if (has_boxes)
           {
-            if (around == nullptr || cell != current)
+            if (around.cells.empty() || cell != current)
               {
                 current = cell;
-                around  = &surroundings_of(cell, discretization);
+                find_surroundings(cell, discretization, around);
               }
-            const auto &[cells, reach, start, end] = *around;
+            const auto &[cells, reach, start, end] = around;
             const auto half =
               keeps_motion ?
                 points.vector(p, offset_half) :
@@ -249,10 +236,10 @@ namespace impm
             radius     = (lower[0] + upper[0]) / 2;
             double sum = 0;
             if (inside)
-              sum = cut(cell, p, lower, upper, pieces);
+              sum = cut<dim>(cell, discretization, p, lower, upper, pieces);
             else
               for (const auto &other : cells)
-                sum += cut(other, p, lower, upper, pieces);
+                sum += cut(other, discretization, p, lower, upper, pieces);
             for (unsigned int i = first; i < pieces.size(); ++i)
               pieces[i].weight /= sum;
           }

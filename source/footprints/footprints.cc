@@ -102,6 +102,7 @@ namespace impm
           }
         ++cells[slot].end;
       }
+    cells.shrink_to_fit();
     unsigned int sum = 0;
     for (auto &cell : cells)
       {
@@ -304,6 +305,8 @@ namespace impm
         patch.end_nodes  = patch_nodes.size();
         patches.push_back(patch);
       }
+    patches.shrink_to_fit();
+    patch_nodes.shrink_to_fit();
   }
 
   template <int dim>

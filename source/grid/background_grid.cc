@@ -4,6 +4,7 @@
 #include <deal.II/grid/grid_generator.h>
 #include <deal.II/grid/grid_tools.h>
 
+#include <impm/base/memory.h>
 #include <impm/grid/background_grid.h>
 
 #include <algorithm>
@@ -217,6 +218,17 @@ namespace impm
     state.velocity     = result.velocity;
     state.acceleration = result.acceleration;
     place_nodes();
+  }
+
+  template <int dim>
+  std::size_t
+  BackgroundGrid<dim>::memory_consumption() const
+  {
+    const auto &numbering = *current->numbering;
+    return triangulation.memory_consumption() +
+           numbering.dof_handler.memory_consumption() +
+           numbering.hanging_nodes.memory_consumption() +
+           bytes_of(current->node_positions);
   }
 
   template class BackgroundGrid<2>;

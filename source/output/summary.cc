@@ -19,9 +19,9 @@ namespace impm
   RunSummary::write(const std::string &directory,
                     const MPI_Comm     communicator) const
   {
-    Utilities::System::MemoryStats memory;
-    Utilities::System::get_memory_stats(memory);
-    const auto peak = Utilities::MPI::sum(memory.VmHWM, communicator);
+    Utilities::System::MemoryStats usage;
+    Utilities::System::get_memory_stats(usage);
+    const auto peak = Utilities::MPI::sum(usage.VmHWM, communicator);
     if (Utilities::MPI::this_mpi_process(communicator) != 0)
       return;
 
@@ -46,9 +46,11 @@ namespace impm
     for (const auto &[name, seconds] : phases)
       json["wall_seconds_by_phase"][name] = seconds;
     json["peak_memory_kilobytes"] = peak;
-    json["wall_seconds"]          = wall_seconds;
-    json["warnings"]              = warnings;
-    json["errors"]                = nlohmann::ordered_json::array();
+    for (const auto &[owner, bytes] : memory)
+      json["memory_bytes_by_owner"][owner] = bytes;
+    json["wall_seconds"] = wall_seconds;
+    json["warnings"]     = warnings;
+    json["errors"]       = nlohmann::ordered_json::array();
     // Numbers that are not finite become null.
     for (const auto &error : errors)
       {

@@ -78,6 +78,21 @@ namespace impm
   }
 
   template <int dim>
+  bool
+  SortedParticles<dim>::are_in_order() const
+  {
+    bool         are  = true;
+    unsigned int last = 0;
+    for (const auto &particle : particles)
+      {
+        const auto cell = particle.get_surrounding_cell()->active_cell_index();
+        are             = are && last <= cell;
+        last            = cell;
+      }
+    return Utilities::MPI::min(are ? 1 : 0, grid.communicator) == 1;
+  }
+
+  template <int dim>
   MaterialPoints<dim>::MaterialPoints(const PointLayout         &layout,
                                       const PointLayout         &history,
                                       const Bodies<dim>         &bodies,
@@ -135,7 +150,10 @@ namespace impm
         materials.push_back(body.material);
         names.push_back(body.name);
       }
-    sort();
+    if (sorted.are_in_order())
+      take_addresses();
+    else
+      sort();
     if (!is_draft)
       count_points_under_tractions(tractions, *this);
   }
@@ -145,8 +163,17 @@ namespace impm
   MaterialPoints<dim>::sort()
   {
     sorted.sort();
+    take_addresses();
+  }
+
+  template <int dim>
+  void
+  MaterialPoints<dim>::take_addresses()
+  {
     data.clear();
     ids.clear();
+    data.reserve(sorted.particles.n_locally_owned_particles());
+    ids.reserve(sorted.particles.n_locally_owned_particles());
     for (auto &particle : sorted.particles)
       {
         data.push_back(particle.get_properties().data());

@@ -79,7 +79,12 @@ namespace impm
     summary.points_per_cell = history.last_density();
     summary.phases          = phases();
     summary.wall_seconds    = wall_seconds();
-    summary.warnings        = warnings.list();
+    if (problem) // none if a run that is done was to go on
+      summary.memory = problem->memory_by_owner();
+    summary.memory["points"] = points.memory_consumption();
+    summary.memory["grid"]   = grid.memory_consumption();
+    summary.memory["matrix"] = counts.matrix_bytes;
+    summary.warnings         = warnings.list();
     if (status == "done")
       summary.errors = reference.errors(time, finer_runs);
     summary.write(directory, communicator);

@@ -3,6 +3,8 @@
 #include <deal.II/fe/fe_nothing.h>
 #include <deal.II/fe/fe_values.h>
 
+#include <deal.II/numerics/rtree.h>
+
 #include <impm/base/exceptions.h>
 #include <impm/scene/point_file.h>
 #include <impm/scene/seeding.h>
@@ -11,7 +13,6 @@
 
 #include <array>
 #include <cmath>
-#include <map>
 
 namespace impm
 {
@@ -133,14 +134,26 @@ namespace impm
                            "', which a deformable body needs");
       // Owned by the first cell, by number, that contains it: a point on a
       // face between two ranks must be taken once.
-      std::vector<double> owner(cloud.positions.size(), 1e300);
-      std::map<unsigned int, decltype(Seed<dim>::cell)> cells;
+      const double        nowhere = 1e300;
+      std::vector<double> owner(cloud.positions.size(), nowhere);
+      std::vector<decltype(Seed<dim>::cell)> cells(owner.size());
+      const auto tree = pack_rtree_of_indices(cloud.positions);
       for (const auto &cell : grid.triangulation.active_cell_iterators())
         if (cell->is_locally_owned())
-          for (unsigned int p = 0; p < owner.size(); ++p)
-            if (cell->bounding_box().point_inside(cloud.positions[p]) &&
-                cells.emplace(p, cell).second)
-              owner[p] = cell->global_active_cell_index();
+          {
+            const auto box = cell->bounding_box();
+            // A box says of itself what is inside, up to round-off.
+            auto near = box;
+            near.extend(1e-9 * box.side_length(0));
+            for (const auto p :
+                 tree | boost::geometry::index::adaptors::queried(
+                          boost::geometry::index::intersects(near)))
+              if (owner[p] == nowhere && box.point_inside(cloud.positions[p]))
+                {
+                  owner[p] = cell->global_active_cell_index();
+                  cells[p] = cell;
+                }
+          }
       std::vector<double> first(owner.size());
       Utilities::MPI::min(owner, grid.communicator, first);
       const auto refuse = [&](const unsigned int p, const std::string &why) {
@@ -152,7 +165,7 @@ namespace impm
       };
       for (unsigned int p = 0; p < owner.size(); ++p)
         {
-          if (first[p] == 1e300)
+          if (first[p] == nowhere)
             refuse(p, " lies outside the grid");
           if (!body.rigid && circumference(geometry, cloud.positions[p]) == 0)
             refuse(p,
@@ -161,7 +174,7 @@ namespace impm
           if (owner[p] != first[p])
             continue;
           Seed<dim> seed;
-          seed.cell     = cells.at(p);
+          seed.cell     = cells[p];
           seed.position = cloud.positions[p];
           seed.unit_position =
             grid.mapping->transform_real_to_unit_cell(seed.cell, seed.position);

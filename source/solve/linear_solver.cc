@@ -61,7 +61,8 @@ namespace impm
     if (!matrix)
       {
         TimerOutput::Scope scope(timer, "sparsity");
-        matrix = system.make_matrix(unknowns);
+        matrix                      = system.make_matrix(unknowns);
+        system.counts->matrix_bytes = matrix->memory_consumption();
       }
     TimerOutput::Scope scope(timer, "assembly");
     system.assemble(*matrix);
@@ -110,6 +111,7 @@ namespace impm
   {
     TimerOutput::Scope scope(timer, "preconditioner");
     ++system.counts->hierarchies;
+    preconditioner = {}; // two at a time were the peak of a run's memory
     preconditioner = make_amg(*matrix, system.near_null_space(unknowns));
     amg_is_old     = false;
     place_of_amg   = matrix->place_of_entries();

@@ -86,17 +86,9 @@ namespace impm
   unsigned int
   RemoteRows::place(const Number row, const Number column) const
   {
-    const Row &found = find(row);
-    return found.begin + n_components * (std::lower_bound(found.columns.begin(),
-                                                          found.columns.end(),
-                                                          column) -
-                                         found.columns.begin());
-  }
-
-  unsigned int
-  RemoteRows::row_length(const Number row) const
-  {
-    return n_components * find(row).columns.size();
+    const Columns &columns = find(row).columns;
+    return std::lower_bound(columns.begin(), columns.end(), column) -
+           columns.begin();
   }
 
   void

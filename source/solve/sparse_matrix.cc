@@ -1,3 +1,4 @@
+#include <impm/base/memory.h>
 #include <impm/solve/trilinos_matrix.h>
 
 #include <Epetra_CrsGraph.h>
@@ -114,8 +115,10 @@ namespace impm
     const unsigned int n_components = unknowns.n_components;
     const auto        &first        = unknowns.first;
     const unsigned int n_rows       = unknowns.n_owned();
-    const auto         pairs        = couple_nodes();
-    const auto         add_columns  = [&](const unsigned int node, auto add) {
+    blocks.shrink_to_fit();
+    block_nodes.shrink_to_fit();
+    const auto pairs       = couple_nodes();
+    const auto add_columns = [&](const unsigned int node, auto add) {
       const auto row = first[node] / n_components;
       for (unsigned int k = 0; k < pairs.row_length(row); ++k)
         add(n_components * pairs.column_number(row, k));
@@ -175,7 +178,8 @@ namespace impm
       }
     check(graph.FillComplete(rows, rows));
     check(graph.OptimizeStorage());
-    trilinos->matrix.reinit(Epetra_CrsMatrix(Copy, graph), false);
+    // A view has no values of its own: the ones that count come with reinit().
+    trilinos->matrix.reinit(Epetra_CrsMatrix(View, graph), false);
     find_places();
   }
 
@@ -197,22 +201,23 @@ namespace impm
     const unsigned int n_components = unknowns.n_components;
     const auto        &partitioner  = *unknowns.partitioner;
     const auto        &matrix       = trilinos->matrix.trilinos_matrix();
-    int               *row_starts, *columns;
-    check(matrix.ExtractCrsDataPointers(row_starts, columns, values));
-    row_lengths.resize(unknowns.nodes.size());
-    for (unsigned int r = 0; r < row_lengths.size(); ++r)
-      row_lengths[r] =
-        row_starts[n_components * r + 1] - row_starts[n_components * r];
+    int               *starts, *columns;
+    check(matrix.ExtractCrsDataPointers(starts, columns, values));
+    row_starts = starts;
 
     const auto place_in_row = [&](const unsigned int row, const int column) {
       const int *begin = columns + row_starts[row];
       const int *end   = columns + row_starts[row + 1];
       const int *found = std::lower_bound(begin, end, column);
       AssertThrow(found != end && *found == column, ExcInternalError());
-      return found - columns;
+      return found - begin;
+    };
+    const auto append = [&](const unsigned int place) {
+      AssertThrow(place < no_place, ExcInternalError());
+      places.push_back(place);
     };
     for (unsigned int i = 0; i < unknowns.n_owned(); ++i)
-      diagonal_places.push_back(place_in_row(i, i));
+      diagonal_places.push_back(row_starts[i] + place_in_row(i, i));
     places.reserve(n_places_of_blocks);
     for (const auto &block : blocks)
       for (unsigned int i = block.begin; i < block.end; ++i)
@@ -225,20 +230,21 @@ namespace impm
                 row == Unknowns::none || column == Unknowns::none)
               places.push_back(no_place);
             else if (is_here)
-              places.push_back(place_in_row(partitioner.global_to_local(row),
-                                            local_column(column)));
+              append(place_in_row(partitioner.global_to_local(row),
+                                  local_column(column)) /
+                     n_components);
             else
-              places.push_back(
+              append(
                 remote_rows.place(row / n_components, column / n_components));
         }
     remote_rows.find_places(
       [&](const auto row, const auto column) {
-        return place_in_row(partitioner.global_to_local(n_components * row),
-                            local_column(n_components * column));
+        const auto first = partitioner.global_to_local(n_components * row);
+        return row_starts[first] +
+               place_in_row(first, local_column(n_components * column));
       },
       [&](const auto row) {
-        return row_lengths[partitioner.global_to_local(n_components * row) /
-                           n_components];
+        return row_length(partitioner.global_to_local(n_components * row));
       });
   }
 
@@ -311,8 +317,8 @@ namespace impm
   SparseMatrix::add_entries(const Block              &block,
                             const FullMatrix<double> &entries)
   {
-    const unsigned int  n     = block.end - block.begin;
-    const unsigned int *place = &places[block.begin_places];
+    const unsigned int n     = block.end - block.begin;
+    const auto        *place = &places[block.begin_places];
     for (unsigned int i = 0; i < n; ++i)
       {
         const auto row = unknowns.first[block_nodes[block.begin + i]];
@@ -321,17 +327,25 @@ namespace impm
             place += n;
             continue;
           }
-        const bool         is_here = unknowns.partitioner->in_local_range(row);
-        const unsigned int length =
-          is_here ? row_lengths[unknowns.partitioner->global_to_local(row) /
-                                n_components] :
-                    remote_rows.row_length(row / n_components);
-        double *const target = is_here ? values : remote_rows.values.data();
+        double      *target; // the first of the rows
+        unsigned int length;
+        if (unknowns.partitioner->in_local_range(row))
+          {
+            const auto r = unknowns.partitioner->global_to_local(row);
+            target       = values + row_starts[r];
+            length       = row_length(r);
+          }
+        else
+          {
+            const auto &remote = remote_rows.find(row / n_components);
+            target             = remote_rows.values.data() + remote.begin;
+            length             = n_components * remote.columns.size();
+          }
         for (unsigned int j = 0; j < n; ++j, ++place)
           if (*place != no_place)
             for (unsigned int c = 0; c < n_components; ++c)
               for (unsigned int d = 0; d < n_components; ++d)
-                target[*place + c * length + d] +=
+                target[n_components * *place + c * length + d] +=
                   entries(n_components * i + c, n_components * j + d);
       }
   }
@@ -378,6 +392,14 @@ namespace impm
   SparseMatrix::vmult(Vector &dst, const Vector &src) const
   {
     trilinos->matrix.vmult(dst, src);
+  }
+
+  std::size_t
+  SparseMatrix::memory_consumption() const
+  {
+    return trilinos->matrix.memory_consumption() +
+           bytes_of(blocks, block_nodes, places, diagonal_places) +
+           bytes_of(remote_rows.values, remote_columns);
   }
 
   void

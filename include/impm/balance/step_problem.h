@@ -81,6 +81,10 @@ namespace impm
     std::vector<const Term *>
     stabilization() const;
 
+    /** Of this rank, of what is large (bytes). The matrix is none of it. */
+    MemoryByOwner
+    memory_by_owner() const;
+
     const double          time, dt;
     const TimeIntegrator &integrator;
 

@@ -3,9 +3,9 @@
 
 #include <impm/footprints/footprints.h>
 #include <impm/grid/background_grid.h>
+#include <impm/grid/cells_at_vertices.h>
 
-#include <memory>
-#include <set>
+#include <optional>
 #include <vector>
 
 namespace impm
@@ -50,26 +50,24 @@ namespace impm
 
   private:
     using CellIterator = typename Discretization<dim>::CellIterator;
-    using TriaIterator =
-      typename dealii::Triangulation<dim>::active_cell_iterator;
 
     /** Of a cell. */
     struct Surroundings
     {
-      std::vector<CellIterator> cells;
-      dealii::Tensor<1, dim>    reach;      ///< their smallest extents (m)
-      dealii::Point<dim>        start, end; ///< its own corners (m)
+      std::vector<typename CellsAtVertices<dim>::CellIterator> cells;
+      dealii::Tensor<1, dim> reach;      ///< their smallest extents (m)
+      dealii::Point<dim>     start, end; ///< its own corners (m)
     };
 
-    const Surroundings &
-    surroundings_of(const CellIterator        &cell,
-                    const Discretization<dim> &discretization);
+    void
+    find_surroundings(const CellIterator        &cell,
+                      const Discretization<dim> &discretization,
+                      Surroundings              &result);
 
     const bool has_boxes, boxes_stretch, keeps_motion;
 
     unsigned int                        epoch = 0; ///< of what follows
-    std::vector<std::set<TriaIterator>> vertex_to_cells;
-    std::vector<Surroundings>           surroundings; ///< by cell, where needed
+    std::optional<CellsAtVertices<dim>> cells_at_vertices;
   };
 } // namespace impm
 

@@ -1,6 +1,7 @@
 #ifndef impm_footprints_footprints_h
 #define impm_footprints_footprints_h
 
+#include <impm/base/memory.h>
 #include <impm/grid/discretization.h>
 #include <impm/points/material_points.h>
 
@@ -140,6 +141,15 @@ namespace impm
     void
     spread(const std::vector<dealii::Tensor<1, dim>> &at_points,
            Vector                                    &field) const;
+
+    /** (bytes) */
+    std::size_t
+    memory_consumption() const
+    {
+      return bytes_of(cells, point, weight, inverse_radius, first, entries) +
+             bytes_of(patches, patch_points, patch_nodes, place) +
+             bytes_of(values, gradients, moved_by, cell_of_entry);
+    }
 
     std::vector<Cell>         cells;  ///< those that points touch
     std::vector<unsigned int> point;  ///< of every entry

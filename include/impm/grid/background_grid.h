@@ -58,6 +58,10 @@ namespace impm
       return moved;
     }
 
+    /** Of this rank: cells, numbers and places of nodes (bytes). */
+    std::size_t
+    memory_consumption() const;
+
     /** Sends nodes back to the vertices, which go along with faces that have
      * moved. Collective. */
     void

@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <impm/base/memory.h>
 #include <impm/points/adapt_points.h>
 
 #include <map>
@@ -36,6 +37,7 @@ namespace impm
     std::vector<std::pair<std::string, double>>        figures; ///< last row
     std::map<std::string, double> phases; ///< wall seconds of rank 0
     double                        wall_seconds;
+    MemoryByOwner                 memory; ///< of rank 0, in the last step
     std::vector<std::string>      warnings;
     std::vector<ReferenceError>   errors;
 

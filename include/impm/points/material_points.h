@@ -3,6 +3,7 @@
 
 #include <deal.II/particles/particle_handler.h>
 
+#include <impm/base/memory.h>
 #include <impm/grid/background_grid.h>
 #include <impm/input/sections/bodies.h>
 #include <impm/input/sections/loads.h>
@@ -38,6 +39,12 @@ namespace impm
      */
     void
     sort();
+
+    /** Whether they come in the order of the cells, as those of one shape do
+     * from the start: to sort takes longer than to make them, and memory.
+     * Collective. */
+    bool
+    are_in_order() const;
 
     dealii::types::particle_index
     n_global() const
@@ -201,6 +208,14 @@ namespace impm
              sizeof(dealii::types::particle_index);
     }
 
+    /** Of this rank, with what finds them (bytes). */
+    std::size_t
+    memory_consumption() const
+    {
+      return size() * (bytes_per_point() + sizeof(unsigned int)) +
+             bytes_of(data, ids);
+    }
+
     /** Largest number of doubles that any law keeps per point. */
     unsigned int
     history_size() const
@@ -220,6 +235,10 @@ namespace impm
     const MPI_Comm    communicator;
 
   private:
+    /** Of the points in their order. */
+    void
+    take_addresses();
+
     std::vector<std::shared_ptr<const Material>> materials; ///< by body
     std::vector<std::string>                     names;     ///< of the bodies
     std::vector<double *>                        data;

@@ -15,6 +15,7 @@ namespace impm
     unsigned int  solver_fallbacks      = 0; ///< to the direct solver
     // Steps, or attempts at them, by what their linear systems are meant for.
     unsigned int direct_systems = 0, iterative_systems = 0;
+    std::size_t  matrix_bytes = 0; ///< of the last one, on this rank
   };
 
   /**

@@ -44,22 +44,7 @@ namespace impm
       const std::function<unsigned int(Number row, Number column)> &place,
       const std::function<unsigned int(Number row)>                &row_length);
 
-    /** Place in `values` of the first entry of a pair, in its first row. */
-    unsigned int
-    place(Number row, Number column) const;
-
-    /** From one row of unknowns to the next in `values`. */
-    unsigned int
-    row_length(Number row) const;
-
-    /** Sends the values, adds those of other ranks to the entries of a matrix,
-     * and sets to zero what has been sent. Collective. */
-    void
-    exchange_values(double *entries);
-
-    std::vector<double> values;
-
-  private:
+    /** A row of nodes: as many rows of unknowns as nodes have components. */
     struct Row
     {
       Number       number;
@@ -70,6 +55,18 @@ namespace impm
     const Row &
     find(Number row) const;
 
+    /** Which of the columns of a row it is. */
+    unsigned int
+    place(Number row, Number column) const;
+
+    /** Sends the values, adds those of other ranks to the entries of a matrix,
+     * and sets to zero what has been sent. Collective. */
+    void
+    exchange_values(double *entries);
+
+    std::vector<double> values;
+
+  private:
     unsigned int     n_components = 0;
     MPI_Comm         communicator = MPI_COMM_SELF;
     std::vector<Row> rows; ///< by number, those of an owner together

@@ -7,6 +7,7 @@
 
 #include <impm/solve/remote_rows.h>
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -71,6 +72,10 @@ namespace impm
       return n_places;
     }
 
+    /** Of this rank (bytes). */
+    std::size_t
+    memory_consumption() const;
+
     /** Becomes A D B, with a diagonal matrix D. Collective. */
     void
     multiply(const SparseMatrix &A, const Vector &D, const SparseMatrix &B);
@@ -110,6 +115,13 @@ namespace impm
     dealii::DynamicSparsityPattern
     couple_nodes();
 
+    /** Number of entries of an owned row; alike for all rows of a node. */
+    unsigned int
+    row_length(const unsigned int row) const
+    {
+      return row_starts[row + 1] - row_starts[row];
+    }
+
     /** Of the first unknown of a node: what this rank owns comes first. */
     int
     local_column(Unknowns::Number number) const;
@@ -125,16 +137,16 @@ namespace impm
     std::size_t                next_block = 0;
     dealii::FullMatrix<double> eliminated;
 
-    /** For each pair of nodes of a block the place of their first entry in the
-     * first of the rows among the values of the matrix, or of those for other
-     * ranks, or no_place. */
-    std::vector<unsigned int>     places;
-    std::size_t                   n_places_of_blocks = 0;
-    static constexpr unsigned int no_place           = -1;
+    /** For each pair of nodes of a block which of the nodes that the row
+     * couples the column is, or no_place. There are many: for boxes as many
+     * bytes as a fifth of the entries. */
+    std::vector<std::uint16_t>     places;
+    std::size_t                    n_places_of_blocks = 0;
+    static constexpr std::uint16_t no_place           = -1;
 
-    double *values = nullptr; ///< of the matrix, unless it is a product
+    double    *values     = nullptr; ///< of the matrix, unless it is a product
+    const int *row_starts = nullptr; ///< in `values`, by owned row
     std::vector<unsigned int> diagonal_places; ///< by owned row
-    std::vector<unsigned int> row_lengths;     ///< by owned node with unknowns
     RemoteRows                remote_rows;
     /** First unknowns of nodes of other ranks in rows of this one. */
     std::vector<Unknowns::Number> remote_columns;

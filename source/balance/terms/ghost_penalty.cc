@@ -7,6 +7,8 @@
 
 #include <impm/balance/terms/ghost_penalty.h>
 
+#include <cmath>
+
 namespace impm
 {
   using namespace dealii;
@@ -52,7 +54,7 @@ namespace impm
     exchange_cell_data(discretization, at_edge);
 
     const FE_Q<dim>       fe(1);
-    const QGauss<dim - 1> quadrature(2);
+    const QGauss<dim - 1> quadrature(2); // n_quadrature points
     const UpdateFlags     flags = update_gradients | update_normal_vectors |
                               update_quadrature_points | update_JxW_values;
     FEFaceValues<dim>      here(mapping, fe, quadrature, flags);
@@ -107,24 +109,21 @@ namespace impm
                                 cell_extent(cell, f / 2);
           for (const unsigned int q : here.quadrature_point_indices())
             {
-              std::array<double, max_nodes> jump{};
-              for (unsigned int v = 0; v < half; ++v)
-                {
-                  jump[place[v]] +=
-                    here.shape_grad(v, q) * here.normal_vector(q);
-                  jump[place[half + v]] -=
-                    (other->shape_grad(v, q) * here.normal_vector(q));
-                }
               const double around =
                 axisymmetric ? 2 * numbers::PI * here.quadrature_point(q)[0] :
                                1.;
-              for (unsigned int a = 0; a < face.n_nodes; ++a)
-                for (unsigned int b = 0; b < face.n_nodes; ++b)
-                  face.matrix[a][b] +=
-                    weight * around * here.JxW(q) * jump[a] * jump[b];
+              const double factor = std::sqrt(weight * around * here.JxW(q));
+              for (unsigned int v = 0; v < half; ++v)
+                {
+                  face.jumps[q][place[v]] +=
+                    factor * (here.shape_grad(v, q) * here.normal_vector(q));
+                  face.jumps[q][place[half + v]] -=
+                    factor * (other->shape_grad(v, q) * here.normal_vector(q));
+                }
             }
           faces.push_back(face);
         }
+    faces.shrink_to_fit(); // they are large
   }
 
   template <int dim>
@@ -133,18 +132,12 @@ namespace impm
   {
     for (const auto &face : faces)
       for (unsigned int c = 0; c < dim; ++c)
-        {
-          std::array<double, max_nodes> values;
-          for (unsigned int b = 0; b < face.n_nodes; ++b)
-            values[b] = u.local_element(dim * face.nodes[b] + c);
-          for (unsigned int a = 0; a < face.n_nodes; ++a)
-            {
-              double sum = 0;
-              for (unsigned int b = 0; b < face.n_nodes; ++b)
-                sum += face.matrix[a][b] * values[b];
-              image.local_element(dim * face.nodes[a] + c) += sum;
-            }
-        }
+        for (const auto &jump : face.jumps)
+          {
+            const double value = face.jump_of(u, c, jump);
+            for (unsigned int a = 0; a < face.n_nodes; ++a)
+              image.local_element(dim * face.nodes[a] + c) += jump[a] * value;
+          }
   }
 
   template <int dim>
@@ -154,11 +147,11 @@ namespace impm
     double sum = 0;
     for (const auto &face : faces)
       for (unsigned int c = 0; c < dim; ++c)
-        for (unsigned int a = 0; a < face.n_nodes; ++a)
-          for (unsigned int b = 0; b < face.n_nodes; ++b)
-            sum += 0.5 * face.matrix[a][b] *
-                   u.local_element(dim * face.nodes[a] + c) *
-                   u.local_element(dim * face.nodes[b] + c);
+        for (const auto &jump : face.jumps)
+          {
+            const double value = face.jump_of(u, c, jump);
+            sum += 0.5 * value * value;
+          }
     return sum;
   }
 
@@ -176,8 +169,9 @@ namespace impm
             block.reinit(dim * n, dim * n);
             for (unsigned int a = 0; a < n; ++a)
               for (unsigned int b = 0; b < n; ++b)
-                for (unsigned int c = 0; c < dim; ++c)
-                  block(dim * a + c, dim * b + c) = face.matrix[a][b];
+                if (const double value = face.matrix(a, b); value != 0)
+                  for (unsigned int c = 0; c < dim; ++c)
+                    block(dim * a + c, dim * b + c) = value;
           }
         take(make_array_view(face.nodes.begin(), face.nodes.begin() + n),
              block);

@@ -59,12 +59,14 @@ namespace impm
         section.numbers("Lower corner", dim, "Of the domain (m).");
       const auto upper =
         section.numbers("Upper corner", dim, "Of the domain (m).");
-      const auto cells =
-        section.numbers("Cells",
-                        dim,
-                        "Number of cells in each direction.",
-                        "10, 10",
-                        Patterns::List(Patterns::Integer(1), 2, 3));
+      const auto cells = section.numbers(
+        "Cells",
+        dim,
+        "Number of cells in each direction. A power of two that "
+        "divides all of them saves time: cells of the grid are "
+        "made by halving coarser ones, as often as that goes.",
+        "10, 10",
+        Patterns::List(Patterns::Integer(1), 2, 3));
       for (unsigned int d = 0; d < dim; ++d)
         {
           grid.lower_corner[d] = lower[d];

@@ -41,9 +41,9 @@ namespace
       const auto            inverse = law.form() == Material::Form::linearized ?
                                         diagonal(1, 1, 1) :
                                         invert(increment);
-      Kinematics<2>::List<>   P;
+      Kinematics<2>::List<> P;
       Kinematics<2>::Matrix<> A;
-      const Kinematics<2>   kinematics(false);
+      const Kinematics<2>     kinematics(false);
       kinematics.carry_back(kinematics.list(response.kirchhoff_stress),
                             inverse,
                             1.,
@@ -55,7 +55,7 @@ namespace
       return result;
     }
 
-    unsigned long         n_evaluations = 0;
+    unsigned long           n_evaluations = 0;
     Kinematics<2>::Matrix<> spatial;
   };
 

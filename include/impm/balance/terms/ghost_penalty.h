@@ -1,13 +1,13 @@
 #ifndef impm_balance_terms_ghost_penalty_h
 #define impm_balance_terms_ghost_penalty_h
 
-#include <deal.II/base/tensor.h>
-
 #include <deal.II/fe/mapping.h>
 
 #include <impm/balance/terms/term.h>
+#include <impm/base/memory.h>
 #include <impm/grid/populated_cells.h>
 
+#include <array>
 #include <vector>
 
 namespace impm
@@ -27,13 +27,41 @@ namespace impm
   class GhostPenalty : public Term
   {
   public:
-    static constexpr unsigned int max_nodes = 2 * Footprints<dim>::n_nodes;
+    static constexpr unsigned int max_nodes    = 2 * Footprints<dim>::n_nodes;
+    static constexpr unsigned int n_quadrature = 1u << (dim - 1);
 
+    /** What the penalty of a face consists of: half the squares of [d_n u] at
+     * its quadrature points, each of which is a weighted sum over nodes. A
+     * matrix of the nodes would take four times the memory. */
     struct Face
     {
+      using OverNodes = std::array<double, max_nodes>;
+
       unsigned int                        n_nodes = 0;
-      std::array<unsigned int, max_nodes> nodes; ///< of both cells, once each
-      dealii::Tensor<2, static_cast<int>(max_nodes)> matrix; ///< per component
+      std::array<unsigned int, max_nodes> nodes;   ///< of both cells, once each
+      std::array<OverNodes, n_quadrature> jumps{}; ///< sqrt(weight) [d_n N]
+
+      /** Entry of the matrix, of each component. */
+      double
+      matrix(const unsigned int a, const unsigned int b) const
+      {
+        double sum = 0;
+        for (const auto &jump : jumps)
+          sum += jump[a] * jump[b];
+        return sum;
+      }
+
+      /** [d_n u], times sqrt(weight). */
+      double
+      jump_of(const Vector      &u,
+              const unsigned int component,
+              const OverNodes   &jump) const
+      {
+        double sum = 0;
+        for (unsigned int a = 0; a < n_nodes; ++a)
+          sum += jump[a] * u.local_element(dim * nodes[a] + component);
+        return sum;
+      }
     };
 
     /** `gamma` in units of Young's modulus. Collective. */
@@ -57,6 +85,13 @@ namespace impm
 
     void
     add_matrix(bool only_pattern, const TakeBlock &take) const override;
+
+    /** (bytes) */
+    std::size_t
+    memory_consumption() const
+    {
+      return bytes_of(faces);
+    }
 
     std::vector<Face> faces; ///< those that this rank works on
   };

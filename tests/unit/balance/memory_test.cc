@@ -1,0 +1,75 @@
+#include <gtest/gtest.h>
+
+#include "scene_fixture.h"
+
+using namespace dealii;
+using namespace impm;
+
+namespace
+{
+  /** Of what is large in a step: bytes for each of its points. */
+  template <int dim>
+  std::map<std::string, double>
+  bytes_per_point(const std::string &kind, const std::string &method)
+  {
+    // Bodies in the middle of their grid, whose boxes overlap cells.
+    Model<dim> model(
+      block_scene(kind),
+      {"Grid/Method=" + method,
+       "Grid/Lower corner=" + std::string(dim == 2 ? "-1, -1" : "-1, -1, -1"),
+       "Grid/Upper corner=" + std::string(dim == 2 ? "2, 2" : "2, 2, 2"),
+       "Grid/Cells=" + std::string(dim == 2 ? "24, 24" : "24, 24, 24")},
+      MPI_COMM_SELF);
+    model.place_points([&](const unsigned int, const auto &particle) {
+      auto x = particle.get_location();
+      for (unsigned int d = 0; d < dim; ++d)
+        x[d] += 0.01;
+      return x;
+    });
+    model.begin_step();
+    auto       owners   = model.problem->memory_by_owner();
+    const auto unknowns = model.balance().make_unknowns();
+    const auto matrix   = model.balance().make_matrix(unknowns);
+    owners["points"]    = model.points.memory_consumption();
+    owners["matrix"]    = matrix->memory_consumption();
+
+    std::map<std::string, double> result;
+    for (const auto &[owner, bytes] : owners)
+      result[owner] = 1. * bytes / model.points.size();
+    return result;
+  }
+
+  /** Who takes less shall say so here. */
+  void
+  expect(const std::map<std::string, double> &found,
+         const std::map<std::string, double> &allowed)
+  {
+    for (const auto &[owner, bytes] : found)
+      {
+        SCOPED_TRACE(owner);
+        ASSERT_EQ(allowed.count(owner), 1u) << bytes;
+        EXPECT_LE(bytes, allowed.at(owner));
+        EXPECT_GT(bytes, 0.9 * allowed.at(owner));
+      }
+  }
+} // namespace
+
+TEST(Memory, OfAPointIsBoundedByOwner)
+{
+  {
+    SCOPED_TRACE("2D MPM");
+    expect(bytes_per_point<2>("plane strain", "MPM"), {});
+  }
+  {
+    SCOPED_TRACE("2D GIMP");
+    expect(bytes_per_point<2>("plane strain", "GIMP"), {});
+  }
+  {
+    SCOPED_TRACE("3D MPM");
+    expect(bytes_per_point<3>("3D", "MPM"), {});
+  }
+  {
+    SCOPED_TRACE("3D GIMP");
+    expect(bytes_per_point<3>("3D", "GIMP"), {});
+  }
+}

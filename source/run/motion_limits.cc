@@ -17,15 +17,18 @@ namespace impm
               const std::array<double, 2 * dim>      &faces,
               const GeometryKind                      geometry)
     {
-      std::string what;
       // The next step divides by the radius.
-      if (geometry == GeometryKind::axisymmetric && !(end[0] > 0))
-        what = "reach the axis";
-      for (unsigned int f = 0; f < 2 * dim && what.empty(); ++f)
+      const bool at_axis =
+        geometry == GeometryKind::axisymmetric && !(end[0] > 0);
+      bool outside = false;
+      for (unsigned int d = 0; d < dim; ++d)
+        outside = outside || end[d] < faces[2 * d] || end[d] > faces[2 * d + 1];
+      if (!at_axis && !outside)
+        return "";
+      std::string what = "reach the axis";
+      for (unsigned int f = 2 * dim; f-- > 0 && !at_axis;)
         if (f % 2 == 0 ? end[f / 2] < faces[f] : end[f / 2] > faces[f])
           what = "leave the domain through its " + face_names()[f] + " face";
-      if (what.empty())
-        return what;
       std::ostringstream text;
       text << "point " << particle.get_id() << " at " << particle.get_location()
            << " would " << what;
@@ -65,6 +68,7 @@ namespace impm
     if (moved)
       problem.footprints.interpolate(grid.nodal_state().displacement, before);
     GridMotion                                        motion;
+    double                                            largest = 0;
     typename Triangulation<dim>::active_cell_iterator cell;
     std::array<double, dim>                           extents{};
     unsigned int                                      p = 0;
@@ -92,8 +96,8 @@ namespace impm
                 const double of_grid =
                   stretch[2 * d] * (start - fixed[2 * d]) +
                   stretch[2 * d + 1] * (start - fixed[2 * d + 1]);
-                motion.in_cells =
-                  std::max(motion.in_cells,
+                largest =
+                  std::max(largest,
                            std::abs(ago[d] + step[d] - of_grid) / extents[d]);
               }
           }
@@ -106,7 +110,7 @@ namespace impm
           motion.forbidden = text;
           return motion;
         }
-    motion.in_cells = Utilities::MPI::max(motion.in_cells, points.communicator);
+    motion.in_cells = Utilities::MPI::max(largest, points.communicator);
     // Nor does a point feel material that it has not reached; and between ranks
     // it is found only where the neighbour can see it.
     if (motion.in_cells > 0.95 * largest_in_cells)

@@ -282,7 +282,7 @@ namespace impm
     report.external_work      = work.external;
     report.internal_work      = work.internal;
     report.stabilization_work = work.stabilization;
-    history.take_reactions(*problem, forces);
+    history.take_figures(*problem, forces);
     watch_faces();
     commit();
     control.accept();

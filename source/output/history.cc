@@ -171,13 +171,13 @@ namespace impm
     , names(column_names(scene))
     , followed(scene.output.probes.size(), -1)
     , reactions(scene.output.reactions.size())
-    , potential_is_energy(
-        points.history_size() == 0 && points.offset_stress == 0 &&
-        std::all_of(scene.bodies.begin(),
-                    scene.bodies.end(),
-                    [](const auto &body) {
-                      return body.rigid || body.material->has_potential();
-                    }))
+    , potential_is_energy(points.history_size() == 0 &&
+                          std::all_of(scene.bodies.begin(),
+                                      scene.bodies.end(),
+                                      [](const auto &body) {
+                                        return body.rigid ||
+                                               body.material->has_potential();
+                                      }))
     , start_kinetic_energy(total(points).kinetic_energy)
   {
     for (const auto &probe : scene.output.probes)

@@ -142,8 +142,8 @@ namespace impm
     std::vector<double>                             followed;
     std::vector<std::function<double(double time)>> probes;
     std::vector<double>                             reactions;
-    /** Whether energy is what the laws' potentials add up to: where stress
-     * depends on F alone. */
+    /** Whether energy is what the laws' potentials add up to: where none keeps
+     * a history, and so stress depends on F alone. */
     const bool    potential_is_energy;
     double        potential = 0; ///< in the last step, of this rank (J)
     double        start_kinetic_energy;

@@ -208,7 +208,7 @@ TEST(ConservationMpi, WallTakesWhatThePointsLose)
       for (unsigned int step = 0; step < 10; ++step)
         {
           ASSERT_TRUE(model.solve(u).converged);
-          Vector forces;
+          impm::Vector forces;
           if (model.integrator->is_explicit())
             {
               forces = model.problem->start_forces;

@@ -30,29 +30,34 @@ namespace impm
   }
 
   template <int dim>
+  bool
+  MomentumBalance<dim>::strain(const Vector &u, const bool with_tangent)
+  {
+    const Vector &strain_u = strain_increment(u);
+    bool          fine     = true;
+    for (Term *term : parts.strain_terms)
+      fine = term->evaluate(strain_u, with_tangent) && fine;
+    return Utilities::MPI::min(fine ? 1 : 0,
+                               parts.discretization.communicator) == 1;
+  }
+
+  template <int dim>
   typename MomentumBalance<dim>::Evaluation
   MomentumBalance<dim>::evaluate(const Vector &u, const bool with_tangent)
   {
     Evaluation result;
     u.update_ghost_values();
-    const Vector  &strain_u     = strain_increment(u);
-    const MPI_Comm communicator = parts.discretization.communicator;
-    bool           fine         = true;
-    for (Term *term : parts.strain_terms)
-      fine = term->evaluate(strain_u, with_tangent) && fine;
-    if (Utilities::MPI::min(fine ? 1 : 0, communicator) == 0)
+    if (!strain(u, with_tangent))
       return result;
 
-    const double weight    = parts.end_weight;
-    double       potential = 0;
-    forces                 = 0;
-    if (weight > 0)
-      {
-        add_forces_of_strain(strain_u, forces);
-        for (const Term *term : parts.strain_terms)
-          potential += weight * term->energy(strain_u, strain_u);
-      }
-    const auto strain_forces = parts.norm.squares(forces);
+    const Vector &strain_u  = parts.smoothing ? smooth : u;
+    const double  weight    = parts.end_weight;
+    double        potential = 0;
+    forces                  = 0;
+    add_forces_of_strain(strain_u, forces);
+    for (const Term *term : parts.strain_terms)
+      potential += weight * term->energy(strain_u, strain_u);
+    const auto strain_forces = parts.norm->squares(forces);
     if (weight < 1)
       {
         forces.sadd(weight, 1 - weight, parts.start_forces);
@@ -77,7 +82,8 @@ namespace impm
 
     free_residual = forces;
     parts.constraints.set_zero(free_residual);
-    result.potential = Utilities::MPI::sum(potential, communicator);
+    result.potential =
+      Utilities::MPI::sum(potential, parts.discretization.communicator);
     judge(u, strain_forces, result);
     result.admissible =
       std::isfinite(result.residual) && std::isfinite(result.potential);
@@ -90,7 +96,7 @@ namespace impm
                               const std::vector<double> &strain_forces,
                               Evaluation                &result) const
   {
-    const auto         &norm   = parts.norm;
+    const auto         &norm   = *parts.norm;
     const unsigned int  n      = norm.n_groups();
     std::vector<double> sums   = norm.squares(free_residual);
     const auto          append = [&](const std::vector<double> &more) {

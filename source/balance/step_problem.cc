@@ -28,6 +28,18 @@ namespace impm
       return footprints;
     }
 
+    /** Nodes that are held at rest do not take the motion of the points around
+     * them. */
+    template <int dim>
+    NodalMotion
+    stop_held(NodalMotion motion, const StepConstraints<dim> &constraints)
+    {
+      if (motion.is_of_points)
+        for (Vector *vector : {&motion.velocity, &motion.acceleration})
+          constraints.stop_held(*vector);
+      return motion;
+    }
+
     /** A scene has the terms that it needs and no others. */
     std::vector<Term *>
     those_that_are(std::vector<Term *> terms)
@@ -55,27 +67,27 @@ namespace impm
     , footprints(build_footprints(
         builder, points, grid, *discretization, integrator.has_inertia()))
     , populated(footprints, points, *discretization)
-    , norm(scene.solver.residual_scale,
-           dt,
-           scene.bodies,
-           points,
-           footprints,
-           *discretization)
+    , norm(integrator.is_explicit() ?
+             nullptr :
+             std::make_unique<ResidualNorm>(scene.solver.residual_scale,
+                                            dt,
+                                            scene.bodies,
+                                            points,
+                                            footprints,
+                                            *discretization))
+    , gathered(integrator.has_inertia() ?
+                 gather_motion(
+                   points, scene.bodies, footprints, grid, *discretization) :
+                 NodalMotion())
     , constraints(scene.faces,
                   grid,
                   *discretization,
                   rigid,
                   time,
                   dt,
-                  norm.unit_strain_forces)
+                  norm ? norm->unit_strain_forces : gathered.mass)
     , response(points, dt, counts.stress_evaluations)
-    , motion(integrator.has_inertia() ? gather_motion(points,
-                                                      scene.bodies,
-                                                      footprints,
-                                                      constraints,
-                                                      grid,
-                                                      *discretization) :
-                                        NodalMotion())
+    , motion(stop_held(std::move(gathered), constraints))
     , n_limited_boxes(
         Utilities::MPI::sum(footprints.n_limited_boxes, grid.communicator))
     , n_active_dofs(Utilities::MPI::sum<unsigned int>(
@@ -102,6 +114,7 @@ namespace impm
                                            footprints,
                                            populated,
                                            *discretization,
+                                           motion.mass,
                                            time,
                                            time + dt) :
               nullptr)
@@ -116,7 +129,7 @@ namespace impm
           nullptr)
     , balance({*discretization,
                constraints,
-               norm,
+               norm.get(),
                those_that_are(
                  {internal_forces.get(), ghost_penalty.get(), loads.get()}),
                those_that_are({nodal_forces.get()}),
@@ -170,6 +183,8 @@ namespace impm
   StepProblem<dim>::find_start_acceleration() const
   {
     Vector acceleration = motion.acceleration;
+    if (start_forces.size() > 0)
+      discretization->initialize(acceleration);
     for (unsigned int i = 0; i < start_forces.locally_owned_size(); ++i)
       acceleration.local_element(i) =
         motion.mass.local_element(i) > 0 && !constraints.is_constrained[i] ?
@@ -183,6 +198,8 @@ namespace impm
   StepProblem<dim>::make_nodal_forces(const MaterialPoints<dim> &points,
                                       const double isolated_stiffness)
   {
+    if (integrator.is_explicit()) // which solves for the nodes by itself
+      return nullptr;
     Vector known;
     discretization->initialize(known);
     if (integrator.has_inertia())
@@ -238,8 +255,7 @@ namespace impm
   StepProblem<dim>::explicit_increment(Vector &u) const
   {
     // The acceleration is that of the forces at the start.
-    u = start_acceleration;
-    u *= dt * dt;
+    u.equ(dt * dt, start_acceleration);
     u.add(dt, motion.velocity);
     constraints.set_prescribed(u);
   }

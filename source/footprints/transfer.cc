@@ -55,30 +55,36 @@ namespace impm
                             factor * (own[p] / points.mass(p) - seen[p]));
     }
 
+    /** Velocities of the points at the end of the step. */
+    template <int dim>
+    std::vector<Tensor<1, dim>>
+    end_velocities(const StepProblem<dim>    &problem,
+                   const TransferKind         kind,
+                   const Vector              &end_velocity,
+                   const MaterialPoints<dim> &points)
+    {
+      std::vector<Tensor<1, dim>> at_points;
+      if (kind != TransferKind::flip)
+        {
+          problem.footprints.interpolate(end_velocity, at_points);
+          return at_points;
+        }
+      Vector change = end_velocity;
+      change -= problem.motion.velocity;
+      problem.discretization->interpolate_hanging(change);
+      problem.footprints.interpolate(change, at_points);
+      for (unsigned int p = 0; p < points.size(); ++p)
+        at_points[p] += points.velocity(p);
+      return at_points;
+    }
+
+    /** Points take the gradient of the grid's velocity. */
     template <int dim>
     void
-    advance_velocities(const StepProblem<dim> &problem,
-                       const TransferKind      kind,
-                       const Vector           &end_velocity,
-                       MaterialPoints<dim>    &points)
+    take_gradients(const Footprints<dim> &footprints,
+                   const Vector          &velocity,
+                   MaterialPoints<dim>   &points)
     {
-      const auto                 &footprints = problem.footprints;
-      std::vector<Tensor<1, dim>> at_points;
-      if (kind == TransferKind::flip)
-        {
-          Vector change = end_velocity;
-          change -= problem.motion.velocity;
-          problem.discretization->interpolate_hanging(change);
-          footprints.interpolate(change, at_points);
-          for (unsigned int p = 0; p < points.size(); ++p)
-            at_points[p] += points.velocity(p);
-        }
-      else
-        footprints.interpolate(end_velocity, at_points);
-      for (unsigned int p = 0; p < points.size(); ++p)
-        points.set_vector(p, points.offset_velocity, at_points[p]);
-      if (kind != TransferKind::apic)
-        return;
       for (unsigned int p = 0; p < points.size(); ++p)
         std::fill_n(points.fields(p) + points.offset_affine, dim * dim, 0.);
       for (const auto &cell : footprints.cells)
@@ -90,79 +96,133 @@ namespace impm
               for (unsigned int c = 0; c < dim; ++c)
                 for (unsigned int d = 0; d < dim; ++d)
                   C[dim * c + d] +=
-                    end_velocity.local_element(dim * cell.nodes[n] + c) *
+                    velocity.local_element(dim * cell.nodes[n] + c) *
                     footprints.gradient(e)[dim * n + d];
           }
+    }
+
+    /**
+     * Adds m_p S_I and m_p S_I v_p(x_I) of the points to the lumped mass and to
+     * what becomes the velocity, in one pass. `velocity` makes of a point its
+     * v_p, a function of the place of a node.
+     */
+    template <int dim, typename Velocity>
+    void
+    add_mass_and_momentum(const MaterialPoints<dim> &points,
+                          const Footprints<dim>     &footprints,
+                          const Discretization<dim> &discretization,
+                          const Velocity            &velocity,
+                          NodalMotion               &motion)
+    {
+      constexpr unsigned int          n_nodes = Footprints<dim>::n_nodes;
+      std::array<Point<dim>, n_nodes> places;
+      for (const auto &cell : footprints.cells)
+        {
+          for (unsigned int n = 0; n < n_nodes; ++n)
+            places[n] = discretization.node_positions[cell.nodes[n]];
+          std::array<double, n_nodes>         mass{};
+          std::array<Tensor<1, dim>, n_nodes> momentum{};
+          for (unsigned int e = cell.begin; e < cell.end; ++e)
+            {
+              const unsigned int p     = footprints.point[e];
+              const double       m     = points.mass(p);
+              const double      *value = footprints.value(e);
+              const auto         v     = velocity(p);
+              for (unsigned int n = 0; n < n_nodes; ++n)
+                {
+                  const double share = m * value[n];
+                  mass[n] += share;
+                  momentum[n] += share * v(places[n]);
+                }
+            }
+          for (unsigned int n = 0; n < n_nodes; ++n)
+            for (unsigned int c = 0; c < dim; ++c)
+              {
+                const unsigned int i = dim * cell.nodes[n] + c;
+                motion.mass.local_element(i) += mass[n];
+                motion.velocity.local_element(i) += momentum[n][c];
+              }
+        }
     }
   } // namespace
 
   template <int dim>
-  NodalMotion
-  gather_motion(const MaterialPoints<dim>  &points,
-                const Bodies<dim>          &bodies,
-                const Footprints<dim>      &footprints,
-                const StepConstraints<dim> &constraints,
-                const BackgroundGrid<dim>  &grid,
-                const Discretization<dim>  &discretization)
+  Vector
+  gather_mass(const MaterialPoints<dim> &points,
+              const Footprints<dim>     &footprints,
+              const Discretization<dim> &discretization)
   {
-    NodalMotion motion;
-    for (Vector *vector :
-         {&motion.mass, &motion.velocity, &motion.acceleration})
-      discretization.initialize(*vector);
+    Vector                      mass;
     std::vector<Tensor<1, dim>> at_points(points.size());
-    const auto spread = [&](const unsigned int offset, Vector &vector) {
-      for (unsigned int p = 0; p < points.size(); ++p)
-        at_points[p] = points.mass(p) * points.vector(p, offset);
-      footprints.spread(at_points, vector);
-    };
-    // Adds m_p S_I v_p(x_I).
-    const auto add_momentum = [&](const auto &velocity) {
-      for (const auto &cell : footprints.cells)
-        for (unsigned int e = cell.begin; e < cell.end; ++e)
-          for (unsigned int n = 0; n < Footprints<dim>::n_nodes; ++n)
-            {
-              const unsigned int p = footprints.point[e], node = cell.nodes[n];
-              const auto v = velocity(p, discretization.node_positions[node]);
-              for (unsigned int c = 0; c < dim; ++c)
-                motion.velocity.local_element(dim * node + c) +=
-                  points.mass(p) * footprints.value(e)[n] * v[c];
-            }
-    };
-
-    // Lumped; hanging nodes hand theirs to their masters, so that the sums
-    // over all nodes stay those over all points.
     for (unsigned int p = 0; p < points.size(); ++p)
       for (unsigned int d = 0; d < dim; ++d)
         at_points[p][d] = points.mass(p);
-    footprints.spread(at_points, motion.mass);
-    motion.mass.compress(VectorOperation::add);
-    discretization.condense_hanging(motion.mass);
+    discretization.initialize(mass);
+    footprints.spread(at_points, mass);
+    mass.compress(VectorOperation::add);
+    discretization.condense_hanging(mass);
+    return mass;
+  }
 
+  template <int dim>
+  NodalMotion
+  gather_motion(const MaterialPoints<dim> &points,
+                const Bodies<dim>         &bodies,
+                const Footprints<dim>     &footprints,
+                const BackgroundGrid<dim> &grid,
+                const Discretization<dim> &discretization)
+  {
+    NodalMotion motion;
+    // Lumped; hanging nodes hand theirs to their masters, so that the sums
+    // over all nodes stay those over all points.
     if (const auto &state = grid.nodal_state(); state.velocity.size() > 0)
       {
+        motion.mass = gather_mass(points, footprints, discretization);
+        motion.mass.update_ghost_values();
         motion.velocity     = state.velocity;
         motion.acceleration = state.acceleration;
         return motion;
       }
+    discretization.initialize(motion.mass);
+    discretization.initialize(motion.velocity);
+    const auto gather = [&](const auto &velocity) {
+      add_mass_and_momentum(
+        points, footprints, discretization, velocity, motion);
+      motion.mass.compress(VectorOperation::add);
+      discretization.condense_hanging(motion.mass);
+      average_over_mass(discretization, motion.mass, motion.velocity);
+      motion.mass.update_ghost_values();
+    };
+
     if (grid.is_lagrangian)
       {
         // Weighed by mass where bodies meet.
-        add_momentum([&](const unsigned int p, const Point<dim> &x) {
-          Tensor<1, dim> v;
-          if (const auto &velocity = bodies[points.body(p)].velocity)
-            for (unsigned int c = 0; c < dim; ++c)
-              v[c] = velocity->value(x, c);
-          return v;
+        gather([&](const unsigned int p) {
+          return
+            [&velocity = bodies[points.body(p)].velocity](const Point<dim> &x) {
+              Tensor<1, dim> v;
+              for (unsigned int c = 0; velocity && c < dim; ++c)
+                v[c] = velocity->value(x, c);
+              return v;
+            };
         });
-        average_over_mass(discretization, motion.mass, motion.velocity);
         return motion;
       }
-
-    spread(points.offset_velocity, motion.velocity);
+    motion.is_of_points = true;
+    std::vector<Tensor<1, dim>> at_points(
+      points.offset_acceleration > 0 ? points.size() : 0);
+    if (points.offset_acceleration > 0)
+      {
+        for (unsigned int p = 0; p < points.size(); ++p)
+          at_points[p] =
+            points.mass(p) * points.vector(p, points.offset_acceleration);
+        discretization.initialize(motion.acceleration);
+        footprints.spread(at_points, motion.acceleration);
+      }
     if (points.offset_affine > 0)
       {
-        // C_p (x_I - x_p), where x_p is what the footprint makes of the nodes'
-        // places, so that its sum is zero.
+        // v_p + C_p (x_I - x_p), where x_p is what the footprint makes of the
+        // nodes' places, so that the sum of the latter is zero.
         Vector places;
         discretization.initialize(places);
         for (unsigned int i = 0; i < places.locally_owned_size(); ++i)
@@ -170,67 +230,77 @@ namespace impm
             discretization.node_positions[i / dim][i % dim];
         places.update_ghost_values();
         footprints.interpolate(places, at_points);
-        add_momentum([&](const unsigned int p, const Point<dim> &x) {
+        gather([&](const unsigned int p) {
           Tensor<2, dim> C;
           for (unsigned int d = 0; d < dim; ++d)
             C[d] = points.vector(p, points.offset_affine + d * dim);
-          return C * (x - at_points[p]);
+          return [C, v = points.velocity(p), x_p = at_points[p]](
+                   const Point<dim> &x) { return v + C * (x - x_p); };
         });
       }
-    average_over_mass(discretization, motion.mass, motion.velocity);
-    constraints.stop_held(motion.velocity);
-
+    else
+      gather([&](const unsigned int p) {
+        return [v = points.velocity(p)](const Point<dim> &) { return v; };
+      });
     if (points.offset_acceleration > 0)
-      {
-        spread(points.offset_acceleration, motion.acceleration);
-        average_over_mass(discretization, motion.mass, motion.acceleration);
-        constraints.stop_held(motion.acceleration);
-      }
+      average_over_mass(discretization, motion.mass, motion.acceleration);
     return motion;
   }
 
   template <int dim>
   void
-  advance_points(const StepProblem<dim> &problem,
-                 const StepResult       &result,
-                 const TimeSpec         &time,
-                 MaterialPoints<dim>    &points)
+  advance_points(const StepProblem<dim>            &problem,
+                 const StepResult                  &result,
+                 const std::vector<Tensor<1, dim>> &increments,
+                 const TimeSpec                    &time,
+                 MaterialPoints<dim>               &points)
   {
-    std::vector<Tensor<1, dim>> motion;
-    problem.footprints.interpolate(result.increment, motion);
+    const auto        &layout = points.layout;
+    const unsigned int n_stress =
+      points.offset_stress > 0 ?
+        layout.n_components(PointLayout::Kind::symmetric_tensor) :
+        0;
+    const bool move = points.offset_velocity > 0;
+    const auto velocities =
+      move ? end_velocities(problem, time.transfer, result.velocity, points) :
+             std::vector<Tensor<1, dim>>();
     unsigned int p = 0;
     for (auto &particle : points.sorted.particles)
       {
-        particle.set_location(particle.get_location() + motion[p]);
+        particle.set_location(particle.get_location() + increments[p]);
         double *fields      = points.fields(p);
         double *deformation = fields + points.offset_deformation;
-        points.layout.store_tensor(problem.response.increment(p) *
-                                     points.layout.load_tensor(deformation),
-                                   deformation);
-        if (points.offset_stress > 0)
+        layout.store_tensor(problem.response.increment(p) *
+                              layout.load_tensor(deformation),
+                            deformation);
+        if (n_stress > 0)
           std::copy_n(problem.response.end_stress(p),
-                      points.layout.n_components(
-                        PointLayout::Kind::symmetric_tensor),
+                      n_stress,
                       fields + points.offset_stress);
         std::copy_n(problem.response.trial_history(p),
                     points.history_size(),
                     fields + points.offset_history);
+        if (move)
+          points.set_vector(p, points.offset_velocity, velocities[p]);
         ++p;
       }
-    if (points.offset_velocity > 0)
-      advance_velocities(problem, time.transfer, result.velocity, points);
+    if (move && time.transfer == TransferKind::apic)
+      take_gradients(problem.footprints, result.velocity, points);
     if (points.offset_acceleration > 0)
       {
         if (time.transfer == TransferKind::flip)
           add_unseen_acceleration(problem,
                                   (1 - time.gamma) * problem.dt,
                                   points);
-        problem.footprints.interpolate(result.acceleration, motion);
+        std::vector<Tensor<1, dim>> at_points;
+        problem.footprints.interpolate(result.acceleration, at_points);
         for (unsigned int q = 0; q < points.size(); ++q)
-          points.set_vector(q, points.offset_acceleration, motion[q]);
+          points.set_vector(q, points.offset_acceleration, at_points[q]);
       }
   }
 
+  template decltype(gather_mass<2>)    gather_mass<2>;
+  template decltype(gather_mass<3>)    gather_mass<3>;
   template decltype(gather_motion<2>)  gather_motion<2>;
   template decltype(gather_motion<3>)  gather_motion<3>;
   template decltype(advance_points<2>) advance_points<2>;

@@ -83,6 +83,8 @@ namespace impm
   double
   LoadBalance<dim>::imbalance() const
   {
+    if (Utilities::MPI::n_mpi_processes(grid.communicator) == 1)
+      return 1;
     double sum = 0;
     for (const auto &cell : grid.triangulation.active_cell_iterators())
       if (cell->is_locally_owned())

@@ -1,5 +1,8 @@
 #include <impm/grid/populated_cells.h>
 
+#include <algorithm>
+#include <limits>
+
 namespace impm
 {
   using namespace dealii;
@@ -9,32 +12,41 @@ namespace impm
                                       const MaterialPoints<dim> &points,
                                       const Discretization<dim> &discretization)
   {
-    // A point near the border of a rank touches cells of its neighbour. The
-    // largest compliance survives the exchange, and zero means empty.
     const auto &triangulation = discretization.numbering->triangulation;
-    Vector      compliance(
-      triangulation.global_active_cell_index_partitioner().lock());
+    stiffness.resize(triangulation.n_active_cells());
+    cells.reserve(footprints.cells.size());
     for (const auto &cell : footprints.cells)
       {
-        double &value = compliance(cell.cell->global_active_cell_index());
+        double smallest = std::numeric_limits<double>::max();
         for (unsigned int e = cell.begin; e < cell.end; ++e)
-          value =
-            std::max(value,
-                     1 / points.material(footprints.point[e]).stiffness());
+          smallest = std::min(smallest,
+                              points.material(footprints.point[e]).stiffness());
+        stiffness[cell.cell->active_cell_index()] = smallest;
+        if (cell.cell->is_locally_owned())
+          cells.push_back({cell.cell, cell.nodes});
       }
+    if (Utilities::MPI::n_mpi_processes(discretization.communicator) == 1)
+      return;
+
+    // A point near the border of a rank touches cells of its neighbour. The
+    // largest compliance survives the exchange, and zero means empty.
+    Vector compliance(
+      triangulation.global_active_cell_index_partitioner().lock());
+    for (const auto &cell : footprints.cells)
+      compliance(cell.cell->global_active_cell_index()) =
+        1 / stiffness[cell.cell->active_cell_index()];
     compliance.compress(VectorOperation::max);
     compliance.update_ghost_values();
-
-    stiffness.resize(triangulation.n_active_cells());
     for (const auto &cell :
          discretization.dof_handler().active_cell_iterators())
       if (!cell->is_artificial())
         if (const double value = compliance(cell->global_active_cell_index());
             value > 0)
           {
-            stiffness[cell->active_cell_index()] = 1 / value;
-            if (cell->is_locally_owned())
+            double &here = stiffness[cell->active_cell_index()];
+            if (here == 0 && cell->is_locally_owned())
               cells.push_back({cell, discretization.nodes_of(cell)});
+            here = 1 / value;
           }
   }
 

@@ -99,10 +99,12 @@ namespace impm
 
   template <int dim>
   Totals<dim>
-  total(const MaterialPoints<dim> &points)
+  total(const MaterialPoints<dim>  &points,
+        const std::optional<double> strain_energy)
   {
-    Totals<dim>  totals;
-    unsigned int p = 0;
+    Totals<dim> totals;
+    totals.strain_energy = strain_energy.value_or(0);
+    unsigned int p       = 0;
     for (const auto &particle : points.sorted.particles)
       {
         const double mass = points.mass(p);
@@ -119,11 +121,15 @@ namespace impm
             totals.kinetic_energy += 0.5 * mass * v.norm_square();
             totals.angular_momentum += mass * cross_product_3d(x, v);
           }
-        const auto energy =
-          points.material(p).energy(deformation_gradient(points, p),
-                                    points.fields(p) + points.offset_history);
-        totals.strain_energy += points.initial_volume(p) * energy.stored;
-        totals.plastic_work += points.initial_volume(p) * energy.dissipated;
+        if (!strain_energy)
+          {
+            const auto energy =
+              points.material(p).energy(deformation_gradient(points, p),
+                                        points.fields(p) +
+                                          points.offset_history);
+            totals.strain_energy += points.initial_volume(p) * energy.stored;
+            totals.plastic_work += points.initial_volume(p) * energy.dissipated;
+          }
         ++p;
       }
     const auto add_ranks = [&](auto &sum) {
@@ -165,6 +171,13 @@ namespace impm
     , names(column_names(scene))
     , followed(scene.output.probes.size(), -1)
     , reactions(scene.output.reactions.size())
+    , potential_is_energy(points.history_size() == 0 &&
+                          std::all_of(scene.bodies.begin(),
+                                      scene.bodies.end(),
+                                      [](const auto &body) {
+                                        return body.rigid ||
+                                               body.material->has_potential();
+                                      }))
     , start_kinetic_energy(total(points).kinetic_energy)
   {
     for (const auto &probe : scene.output.probes)
@@ -227,9 +240,10 @@ namespace impm
 
   template <int dim>
   void
-  History<dim>::take_reactions(const StepProblem<dim> &problem,
-                               const Vector           &forces)
+  History<dim>::take_figures(const StepProblem<dim> &problem,
+                             const Vector           &forces)
   {
+    potential = problem.response.potential;
     for (unsigned int r = 0; r < reactions.size(); ++r)
       {
         const auto  &spec = output.reactions[r];
@@ -247,7 +261,11 @@ namespace impm
   void
   History<dim>::write(const StepReport &report)
   {
-    const auto totals   = total(points);
+    // Points that split or merge have another energy than in the step.
+    const bool is_known =
+      potential_is_energy && report.splits == 0 && report.merges == 0;
+    const auto totals =
+      total(points, is_known ? std::optional(potential) : std::nullopt);
     const auto n_points = points.sorted.n_global();
     density             = points_per_cell(grid, points);
     figures.clear();
@@ -277,8 +295,6 @@ namespace impm
 
   template class History<2>;
   template class History<3>;
-  template Totals<2>
-  total(const MaterialPoints<2> &);
-  template Totals<3>
-  total(const MaterialPoints<3> &);
+  template decltype(total<2>) total<2>;
+  template decltype(total<3>) total<3>;
 } // namespace impm

@@ -105,13 +105,12 @@ namespace impm
         for (const auto &particle : points.sorted.particles)
           {
             const unsigned int point = p++;
-            const auto        &body =
-              bodies[static_cast<unsigned int>(points.fields(point)[0])];
             if (spec.kind == Kind::point ?
-                  particle.get_id() != *id :
-                  !spec.bodies.empty() && std::count(spec.bodies.begin(),
-                                                     spec.bodies.end(),
-                                                     body.name) == 0)
+                  points.id(point) != *id :
+                  !spec.bodies.empty() &&
+                    std::count(spec.bodies.begin(),
+                               spec.bodies.end(),
+                               bodies[points.body(point)].name) == 0)
               continue;
             if (spec.where &&
                 !(spec.where(points.initial_position(point).begin_raw()) > 0))

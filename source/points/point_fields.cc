@@ -184,15 +184,14 @@ namespace impm
                   const unsigned int         point,
                   const Point<dim>          &place)
   {
-    auto   F     = deformation_gradient(points, point);
-    double start = points.initial_volume(point);
-    if (dim == 2)
-      {
-        if (points.layout.geometry == GeometryKind::axisymmetric)
-          start *= F[2][2] / (2 * numbers::PI * place[0]);
-        F[2][2] = 1;
-      }
-    return start * determinant(F);
+    const double start = points.initial_volume(point);
+    if (dim == 3)
+      return start * determinant(deformation_gradient(points, point));
+    const double *F     = points.fields(point) + points.offset_deformation;
+    const double around = points.layout.geometry == GeometryKind::axisymmetric ?
+                            F[4] / (2 * numbers::PI * place[0]) :
+                            1.;
+    return start * around * (F[0] * F[3] - F[1] * F[2]);
   }
 
   template double

@@ -17,87 +17,89 @@ namespace impm
               const std::array<double, 2 * dim>      &faces,
               const GeometryKind                      geometry)
     {
-      std::string what;
       // The next step divides by the radius.
-      if (geometry == GeometryKind::axisymmetric && !(end[0] > 0))
-        what = "reach the axis";
-      for (unsigned int f = 0; f < 2 * dim && what.empty(); ++f)
+      const bool at_axis =
+        geometry == GeometryKind::axisymmetric && !(end[0] > 0);
+      bool outside = false;
+      for (unsigned int d = 0; d < dim; ++d)
+        outside = outside || end[d] < faces[2 * d] || end[d] > faces[2 * d + 1];
+      if (!at_axis && !outside)
+        return "";
+      std::string what = "reach the axis";
+      for (unsigned int f = 2 * dim; f-- > 0 && !at_axis;)
         if (f % 2 == 0 ? end[f / 2] < faces[f] : end[f / 2] > faces[f])
           what = "leave the domain through its " + face_names()[f] + " face";
-      if (what.empty())
-        return what;
       std::ostringstream text;
       text << "point " << particle.get_id() << " at " << particle.get_location()
            << " would " << what;
       return text.str();
     }
-
-    template <int dim>
-    double
-    in_cells(const Tensor<1, dim>                                    &motion,
-             const typename Triangulation<dim>::active_cell_iterator &cell)
-    {
-      double largest = 0;
-      for (unsigned int d = 0; d < dim; ++d)
-        largest = std::max(largest, std::abs(motion[d]) / cell_extent(cell, d));
-      return largest;
-    }
   } // namespace
 
   template <int dim>
   GridMotion
-  motion_through_grid(const StepProblem<dim>    &problem,
-                      const Vector              &increment,
-                      const BackgroundGrid<dim> &grid,
-                      const MaterialPoints<dim> &points,
-                      const GridPolicy<dim>     &policy,
-                      const double               largest_in_cells)
+  motion_through_grid(const StepProblem<dim>            &problem,
+                      const std::vector<Tensor<1, dim>> &increments,
+                      const BackgroundGrid<dim>         &grid,
+                      const MaterialPoints<dim>         &points,
+                      const GridPolicy<dim>             &policy,
+                      const double                       largest_in_cells)
   {
     const double infinite = std::numeric_limits<double>::infinity();
     // Material that has not reached a face yet does not feel it: a long step
-    // could carry it through.
-    typename BackgroundGrid<dim>::FacePositions placed, end;
+    // could carry it through. Vertices at x move by stretch times their
+    // distance from the opposite face until the grid is reset.
+    typename BackgroundGrid<dim>::FacePositions end, fixed, stretch;
     for (unsigned int f = 0; f < 2 * dim; ++f)
       {
-        placed[f] = grid.face_of_vertices(f);
-        end[f]    = grid.is_lagrangian ?
-                      (f % 2 == 0 ? -infinite : infinite) :
-                      policy.face_position(grid,
+        const double placed = grid.face_of_vertices(f);
+        end[f]              = grid.is_lagrangian ?
+                                (f % 2 == 0 ? -infinite : infinite) :
+                                policy.face_position(grid,
                                         f,
                                         problem.time,
                                         problem.time + problem.dt);
+        fixed[f]            = grid.face_of_vertices(f ^ 1u);
+        stretch[f]          = (end[f] - placed) / (placed - fixed[f]);
       }
-    // How far vertices at x move until the grid is reset.
-    const auto grid_motion = [&](const Point<dim> &x) {
-      Tensor<1, dim> displacement;
-      for (unsigned int f = 0; f < 2 * dim; ++f)
-        {
-          const double here = placed[f], fixed = placed[f ^ 1u];
-          displacement[f / 2] +=
-            (end[f] - here) * (x[f / 2] - fixed) / (here - fixed);
-        }
-      return displacement;
-    };
 
-    std::vector<Tensor<1, dim>> step, before(points.size());
-    problem.footprints.interpolate(increment, step);
-    if (grid.is_moved() && !grid.is_lagrangian)
+    const bool                  moved = grid.is_moved() && !grid.is_lagrangian;
+    std::vector<Tensor<1, dim>> before;
+    if (moved)
       problem.footprints.interpolate(grid.nodal_state().displacement, before);
-    GridMotion   motion;
-    unsigned int p = 0;
+    GridMotion                                        motion;
+    double                                            largest = 0;
+    typename Triangulation<dim>::active_cell_iterator cell;
+    std::array<double, dim>                           extents{};
+    unsigned int                                      p = 0;
     for (const auto &particle : points.sorted.particles)
       {
-        const auto x = particle.get_location();
+        const auto &x    = particle.get_location();
+        const auto &step = increments[p];
         if (motion.forbidden.empty())
           motion.forbidden =
-            forbidden<dim>(particle, x + step[p], end, points.layout.geometry);
+            forbidden<dim>(particle, x + step, end, points.layout.geometry);
         if (!grid.is_lagrangian)
           {
-            const auto cell  = particle.get_surrounding_cell();
-            const auto since = before[p] + step[p];
-            motion.in_cells =
-              std::max(motion.in_cells,
-                       in_cells<dim>(since - grid_motion(x - before[p]), cell));
+            // Points come in the order of cells.
+            const auto here = particle.get_surrounding_cell();
+            if (p == 0 || here != cell)
+              {
+                cell = here;
+                for (unsigned int d = 0; d < dim; ++d)
+                  extents[d] = cell_extent(cell, d);
+              }
+            const auto ago = moved ? before[p] : Tensor<1, dim>();
+            for (unsigned int d = 0; d < dim; ++d)
+              {
+                const double start = x[d] - ago[d];
+                const double of_grid =
+                  stretch[2 * d] * (start - fixed[2 * d]) +
+                  stretch[2 * d + 1] * (start - fixed[2 * d + 1]);
+                largest =
+                  std::max(largest,
+                           std::abs(ago[d] + step[d] - of_grid) / extents[d]);
+              }
           }
         ++p;
       }
@@ -108,7 +110,7 @@ namespace impm
           motion.forbidden = text;
           return motion;
         }
-    motion.in_cells = Utilities::MPI::max(motion.in_cells, points.communicator);
+    motion.in_cells = Utilities::MPI::max(largest, points.communicator);
     // Nor does a point feel material that it has not reached; and between ranks
     // it is found only where the neighbour can see it.
     if (motion.in_cells > 0.95 * largest_in_cells)

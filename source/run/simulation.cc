@@ -203,9 +203,10 @@ namespace impm
     console.detail("  residuals:" + iterations.str());
     if (!solution.converged)
       return solution.failure;
+    problem->footprints.interpolate(result.increment, increments);
     const auto motion =
       motion_through_grid(*problem,
-                          result.increment,
+                          increments,
                           grid,
                           points,
                           *policy,
@@ -281,7 +282,7 @@ namespace impm
     report.external_work      = work.external;
     report.internal_work      = work.internal;
     report.stabilization_work = work.stabilization;
-    history.take_reactions(*problem, forces);
+    history.take_figures(*problem, forces);
     watch_faces();
     commit();
     control.accept();
@@ -298,7 +299,7 @@ namespace impm
     const double       end = time + report.dt;
     is_between_steps       = false;
     result                 = problem->end_motion(result.increment);
-    advance_points(*problem, result, scene.time, points);
+    advance_points(*problem, result, increments, scene.time, points);
     policy->advance(grid, result, time, end);
     rigid.move(time, end);
     if (is_off_grid() && off_grid.n_steps++ == 0)

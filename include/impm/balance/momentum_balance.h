@@ -31,7 +31,7 @@ namespace impm
     {
       const Discretization<dim>  &discretization;
       const StepConstraints<dim> &constraints;
-      const ResidualNorm         &norm;
+      const ResidualNorm         *norm; ///< null if none asks for residuals
       std::vector<Term *>         strain_terms, node_terms;
       const Vector               &start_forces; ///< f(0) (N), if w is below one
       const Vector               &mass;         ///< (kg), or empty
@@ -47,9 +47,17 @@ namespace impm
       : parts(parts)
     {
       counts = &work_counts;
-      for (Vector *vector : {&forces, &free_residual, &work, &smooth})
-        initialize(*vector);
+      if (parts.norm)
+        for (Vector *vector : {&forces, &free_residual, &work})
+          initialize(*vector);
+      if (parts.smoothing)
+        initialize(smooth);
     }
+
+    /** Takes the state of the points at `u`, whose ghosts are up to date;
+     * false, on every rank alike, when a point has none. Collective. */
+    bool
+    strain(const Vector &u, bool with_tangent);
 
     Evaluation
     evaluate(const Vector &u, bool with_tangent = true) override;
@@ -63,7 +71,7 @@ namespace impm
     std::vector<double>
     norms_of(const Vector &force) const override
     {
-      return parts.norm.largest_nearby(force);
+      return parts.norm->largest_nearby(force);
     }
 
     bool

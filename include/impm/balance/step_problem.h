@@ -91,10 +91,16 @@ namespace impm
     const std::shared_ptr<const Discretization<dim>> discretization;
     Footprints<dim>                                  footprints;
     const PopulatedCells<dim>                        populated;
-    const ResidualNorm                               norm;
-    const StepConstraints<dim>                       constraints;
-    PointResponse<dim>                               response;
-    const NodalMotion                                motion;
+    const std::unique_ptr<const ResidualNorm>        norm; ///< null if explicit
+
+  private:
+    NodalMotion gathered; ///< before it is known what holds the nodes
+
+  public:
+    const StepConstraints<dim> constraints;
+    PointResponse<dim>         response;
+    /** Zero where a node is held at rest. */
+    const NodalMotion  motion;
     const unsigned int n_limited_boxes; ///< of all ranks
     /** Neither constrained nor unused, of all ranks. */
     const unsigned int n_active_dofs;

@@ -2,6 +2,7 @@
 #define impm_balance_velocity_smoothing_h
 
 #include <impm/footprints/transfer.h>
+#include <impm/grid/step_constraints.h>
 #include <impm/solve/sparse_matrix.h>
 
 #include <vector>

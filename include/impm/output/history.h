@@ -8,6 +8,7 @@
 #include <impm/scene/scene.h>
 
 #include <fstream>
+#include <optional>
 
 namespace impm
 {
@@ -61,10 +62,12 @@ namespace impm
     double kinetic_energy = 0, strain_energy = 0, plastic_work = 0;
   };
 
-  /** Collective. */
+  /** With the energy (J) that the points of this rank store, if it is known
+   * already. Collective. */
   template <int dim>
   Totals<dim>
-  total(const MaterialPoints<dim> &points);
+  total(const MaterialPoints<dim>  &points,
+        const std::optional<double> strain_energy = {});
 
   /** history.csv: a header line, then rows, each on disk at once. */
   template <int dim>
@@ -88,9 +91,10 @@ namespace impm
     void
     open(const std::string &directory, bool goes_on = false);
 
-    /** The figures of reactions from StepProblem::end_forces(). Collective. */
+    /** What the points do not tell of a step when they have moved, with its
+     * StepProblem::end_forces(). Collective. */
     void
-    take_reactions(const StepProblem<dim> &problem, const Vector &forces);
+    take_figures(const StepProblem<dim> &problem, const Vector &forces);
 
     /**
      * Adds a row, after the points have moved, on all that happened since the
@@ -138,10 +142,14 @@ namespace impm
     std::vector<double>                             followed;
     std::vector<std::function<double(double time)>> probes;
     std::vector<double>                             reactions;
-    double                                          start_kinetic_energy;
-    Figures                                         figures;
-    std::string                                     file_name;
-    std::ofstream                                   file;
+    /** Whether energy is what the laws' potentials add up to: where none keeps
+     * a history, and so stress depends on F alone. */
+    const bool    potential_is_energy;
+    double        potential = 0; ///< in the last step, of this rank (J)
+    double        start_kinetic_energy;
+    Figures       figures;
+    std::string   file_name;
+    std::ofstream file;
     unsigned long size = 0; ///< of the file, in whole rows (bytes)
   };
 } // namespace impm

@@ -5,6 +5,7 @@
 #include <impm/grid/grid_policy.h>
 
 #include <string>
+#include <vector>
 
 namespace impm
 {
@@ -17,15 +18,15 @@ namespace impm
     double in_cells = 0;
   };
 
-  /** Of an increment that has converged. Collective. */
+  /** Of the points' increments in a step that has converged. Collective. */
   template <int dim>
   GridMotion
-  motion_through_grid(const StepProblem<dim>    &problem,
-                      const Vector              &increment,
-                      const BackgroundGrid<dim> &grid,
-                      const MaterialPoints<dim> &points,
-                      const GridPolicy<dim>     &policy,
-                      double                     largest_in_cells);
+  motion_through_grid(const StepProblem<dim>                    &problem,
+                      const std::vector<dealii::Tensor<1, dim>> &increments,
+                      const BackgroundGrid<dim>                 &grid,
+                      const MaterialPoints<dim>                 &points,
+                      const GridPolicy<dim>                     &policy,
+                      double largest_in_cells);
 } // namespace impm
 
 #endif

@@ -175,6 +175,7 @@ namespace impm
     WorkCounts                            counts;
     std::unique_ptr<StepProblem<dim>>     problem; ///< of this step
     StepResult                            result;
+    std::vector<dealii::Tensor<1, dim>>   increments; ///< of the points in it
 
     /** Of nodes that keep their motion, since they were on the grid. */
     struct OffGrid

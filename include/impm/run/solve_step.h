@@ -4,6 +4,8 @@
 #include <impm/balance/step_problem.h>
 #include <impm/solve/newton_solver.h>
 
+#include <cmath>
+
 namespace impm
 {
   /**
@@ -24,7 +26,8 @@ namespace impm
     if (problem.integrator.is_explicit())
       {
         problem.explicit_increment(u);
-        result.converged = problem.balance.evaluate(u, false).admissible;
+        result.converged =
+          problem.balance.strain(u, false) && std::isfinite(u.norm_sqr());
         if (!result.converged)
           result.failure = "the explicit step turns a point inside out";
       }

@@ -5,6 +5,7 @@
 
 #include <impm/balance/terms/loads.h>
 #include <impm/base/exceptions.h>
+#include <impm/footprints/transfer.h>
 #include <impm/input/expressions.h>
 
 #include <algorithm>
@@ -16,6 +17,13 @@ namespace impm
 
   namespace
   {
+    template <typename Density>
+    bool
+    is_uniform(const Density &density)
+    {
+      return !names_any_of(density, "x|y|z|rand|rand_seed");
+    }
+
     template <int dim>
     void
     subtract_forces_on_points(const LoadsSpec<dim>      &spec,
@@ -31,7 +39,7 @@ namespace impm
         [&](auto &density, const bool is_initial, const auto &amount) {
           density.set_time(instant);
           density.vector_value(Point<dim>(), value);
-          const bool   varies = names_any_of(density, "x|y|z|rand|rand_seed");
+          const bool   varies = !is_uniform(density);
           unsigned int next   = 0;
           for (const auto &particle : points.sorted.particles)
             {
@@ -46,7 +54,7 @@ namespace impm
                 forces[p][c] -= amount(p) * value[c];
             }
         };
-      if (spec.body_force)
+      if (spec.body_force && !is_uniform(*spec.body_force))
         subtract(*spec.body_force,
                  spec.body_force_is_initial,
                  [&](const unsigned int p) { return points.mass(p); });
@@ -125,11 +133,36 @@ namespace impm
                           });
     }
 
+    /** Whether each point has its own: all but a body force that is the same
+     * everywhere, which the mass of the nodes feels. */
     template <int dim>
     bool
     acts_on_points(const Scene<dim> &scene)
     {
-      return scene.loads.body_force || !scene.loads.tractions.empty();
+      const auto &loads = scene.loads;
+      return (loads.body_force && !is_uniform(*loads.body_force)) ||
+             !loads.tractions.empty();
+    }
+
+    template <int dim>
+    bool
+    acts_on_nodes(const Scene<dim> &scene)
+    {
+      return scene.loads.body_force && is_uniform(*scene.loads.body_force);
+    }
+
+    template <int dim>
+    void
+    subtract_forces_on_nodes(const LoadsSpec<dim> &spec,
+                             const Vector         &mass,
+                             const double          instant,
+                             Vector               &load)
+    {
+      dealii::Vector<double> value(dim);
+      spec.body_force->set_time(instant);
+      spec.body_force->vector_value(Point<dim>(), value);
+      for (unsigned int i = 0; i < load.locally_owned_size(); ++i)
+        load.local_element(i) -= mass.local_element(i) * value[i % dim];
     }
 
     template <int dim>
@@ -148,7 +181,8 @@ namespace impm
   bool
   Loads<dim>::exist_in(const Scene<dim> &scene)
   {
-    return acts_on_points(scene) || acts_on_faces(scene);
+    return acts_on_points(scene) || acts_on_nodes(scene) ||
+           acts_on_faces(scene);
   }
 
   template <int dim>
@@ -165,9 +199,13 @@ namespace impm
                     const Footprints<dim>     &footprints,
                     const PopulatedCells<dim> &populated,
                     const Discretization<dim> &discretization,
+                    const Vector              &mass,
                     const double               from,
                     const double               to)
   {
+    Vector own_mass;
+    if (acts_on_nodes(scene) && mass.size() == 0)
+      own_mass = gather_mass(points, footprints, discretization);
     const auto gather = [&](const double instant, Vector &load) {
       discretization.initialize(load);
       if (acts_on_points(scene))
@@ -177,6 +215,11 @@ namespace impm
         subtract_forces_on_faces(scene, grid, populated, instant, load);
       load.compress(VectorOperation::add);
       discretization.condense_hanging(load);
+      if (acts_on_nodes(scene))
+        subtract_forces_on_nodes(scene.loads,
+                                 mass.size() > 0 ? mass : own_mass,
+                                 instant,
+                                 load);
     };
     gather(from, at_start);
     if (is_steady(scene))

@@ -273,6 +273,7 @@ namespace
       stresses.push_back(read_stress(p));
     advance_points(*model.problem,
                    {model.vector(), model.vector(), model.vector()},
+                   std::vector<Tensor<1, dim>>(model.points.size()),
                    model.scene.time,
                    model.points);
     Tensor<2, 3> q3 = in_space(q);

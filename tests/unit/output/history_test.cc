@@ -89,6 +89,31 @@ TEST(HistoryMpi, TemperatureAndInternalEnergy)
 }
 
 
+// Of a law without a history, rows have the energy that the step has found, and
+// probes that of the points.
+TEST(HistoryMpi, EnergyOfTheStepIsThatOfThePoints)
+{
+  for (const std::string geometry : {"plane strain", "plane stress"})
+    for (const std::string law : {"log-strain elastic", "neo-Hookean"})
+      {
+        SCOPED_TRACE(geometry + ", " + law);
+        const auto columns =
+          run(scene_from<2>(block_scene(geometry),
+                            press(2, 1) + mean("internal_energy") +
+                              Overrides{"Materials/rubber/Law=" + law,
+                                        "Output/Probes=internal_energy"}),
+              MPI_COMM_WORLD,
+              path_of_run());
+        EXPECT_GT(columns.at("strain_energy").back(), 1e-3);
+        for (unsigned int row = 0; row < columns.at("mass").size(); ++row)
+          EXPECT_NEAR(columns.at("internal_energy")[row] *
+                        columns.at("mass")[row],
+                      columns.at("strain_energy")[row],
+                      1e-11 * columns.at("strain_energy")[row]);
+      }
+}
+
+
 TEST(HistoryMpi, TemperatureNeedsSpecificHeats)
 {
   const auto refusal = [](const Overrides &overrides) -> std::string {

@@ -272,8 +272,10 @@ namespace impm
     commit(const Vector &u)
     {
       u.update_ghost_values();
-      const auto result = problem->end_motion(u);
-      advance_points(*problem, result, scene.time, points);
+      const auto                          result = problem->end_motion(u);
+      std::vector<dealii::Tensor<1, dim>> increments;
+      problem->footprints.interpolate(result.increment, increments);
+      advance_points(*problem, result, increments, scene.time, points);
       if (grid.keeps_motion)
         policy.advance(grid, result, time, time + dt);
       points.sort();

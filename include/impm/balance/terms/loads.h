@@ -23,13 +23,15 @@ namespace impm
     static bool
     exist_in(const Scene<dim> &scene);
 
-    /** For the step from one time to another. Collective. */
+    /** For the step from one time to another. `mass` is that of the nodes, or
+     * empty if it has not been gathered yet. Collective. */
     Loads(const Scene<dim>          &scene,
           const BackgroundGrid<dim> &grid,
           const MaterialPoints<dim> &points,
           const Footprints<dim>     &footprints,
           const PopulatedCells<dim> &populated,
           const Discretization<dim> &discretization,
+          const Vector              &mass,
           double                     from,
           double                     to);
 

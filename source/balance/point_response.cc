@@ -49,8 +49,10 @@ namespace impm
     , end_stresses(points.size() * n_stress)
     , thickening(is_plane_stress ? points.size() : 0, 1.)
   {
-    const unsigned int n         = kinematics.size;
-    const bool         symmetric = points.have_symmetric_tangents();
+    const unsigned int n = kinematics.size;
+    const bool symmetric = points.all_materials([](const Material &material) {
+      return material.has_symmetric_tangent();
+    });
     place_of_entry.resize(n * n);
     for (unsigned int a = 0; a < n; ++a)
       for (unsigned int b = 0; b < n; ++b)

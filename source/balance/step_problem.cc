@@ -245,6 +245,7 @@ namespace impm
   {
     MemoryByOwner bytes;
     bytes["footprints"] = footprints.memory_consumption();
+    bytes["response"]   = response.memory_consumption();
     if (ghost_penalty)
       bytes["ghost_penalty"] = ghost_penalty->memory_consumption();
     return bytes;

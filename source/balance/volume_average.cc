@@ -13,6 +13,9 @@ namespace impm
                                     const Kinematics<dim>     &kinematics)
     : kinematics(kinematics)
   {
+    if (points.all_materials(
+          [](const Material &material) { return !material.average_volume; }))
+      return;
     groups.assign(points.size(), numbers::invalid_unsigned_int);
     std::map<std::pair<unsigned int, unsigned int>, unsigned int>
                  group_of; // by cell and body

@@ -143,7 +143,9 @@ namespace impm
       return scalar([&points, offset = *offset](unsigned int p) {
         return points.fields(p)[offset];
       });
-    if (name == "temperature" && points.have_temperature())
+    if (name == "temperature" &&
+        points.all_materials(
+          [](const Material &material) { return material.specific_heat > 0; }))
       return scalar([&points, energy](unsigned int p) {
         const auto &material = points.material(p);
         return material.initial_temperature +

@@ -5,6 +5,7 @@
 #include <impm/balance/point_batch.h>
 #include <impm/balance/residual_norm.h>
 #include <impm/balance/volume_average.h>
+#include <impm/base/memory.h>
 #include <impm/points/material_points.h>
 
 #include <vector>
@@ -95,6 +96,20 @@ namespace impm
     /** Squares of the points' stresses (N m)^2, by the groups of a norm. */
     std::vector<double>
     squares_of_stresses(const ResidualNorm &norm) const;
+
+    /** What the points' trial state takes (bytes). */
+    std::size_t
+    memory_consumption() const
+    {
+      return bytes_of(gradients,
+                      stresses,
+                      start_stresses,
+                      tangents,
+                      histories,
+                      end_stresses,
+                      thickening) +
+             average.memory_consumption();
+    }
 
     const Kinematics<dim> kinematics;
     VolumeAverage<dim>    average;

@@ -3,6 +3,7 @@
 
 #include <impm/balance/kinematics.h>
 #include <impm/balance/point_batch.h>
+#include <impm/base/memory.h>
 #include <impm/points/material_points.h>
 
 #include <functional>
@@ -93,6 +94,13 @@ namespace impm
     void
     apply_coupling(const std::vector<double> &gradient_changes,
                    std::vector<double>       &stress_changes) const;
+
+    /** (bytes) */
+    std::size_t
+    memory_consumption() const
+    {
+      return bytes_of(groups, mean, coupling, square, start_volume, jacobian);
+    }
 
     /** By point: the number of its group, or an invalid one; empty if none. */
     std::vector<unsigned int> groups;

@@ -74,7 +74,8 @@ namespace impm
 
       /**
        * Incremental potential per initial volume (J/m^3), up to a constant of
-       * the step: tau is its derivative. Only for laws with has_potential().
+       * the step: tau is its derivative. Only for laws with has_potential();
+       * without a history it is the stored energy.
        */
       Number potential = 0.;
 

@@ -128,26 +128,15 @@ namespace impm
       return *materials[body(point)];
     }
 
-    /** Whether all materials have a specific heat. */
+    /** Whether all materials of the points have something. */
+    template <typename Has>
     bool
-    have_temperature() const
+    all_materials(const Has &has) const
     {
       return std::all_of(materials.begin(),
                          materials.end(),
-                         [](const auto &material) {
-                           return !material || material->specific_heat > 0;
-                         });
-    }
-
-    /** Whether all of them have, with whatever laws. */
-    bool
-    have_symmetric_tangents() const
-    {
-      return std::all_of(materials.begin(),
-                         materials.end(),
-                         [](const auto &material) {
-                           return !material ||
-                                  material->has_symmetric_tangent();
+                         [&](const auto &material) {
+                           return !material || has(*material);
                          });
     }
 

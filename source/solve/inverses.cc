@@ -11,9 +11,6 @@
 #include <filesystem>
 #include <iostream>
 #include <sstream>
-#ifdef __GLIBC__
-#  include <malloc.h>
-#endif
 
 namespace impm
 {
@@ -68,13 +65,8 @@ namespace impm
     parameters.set("null space: vectors", amg->modes.data());
     // Where the coarsest matrix is singular, ML says so on the terminal, writes
     // it to a file and goes on without it; no parameter turns this off.
-    const std::string file      = "amesos-failure.dat";
-    const bool        was_there = std::filesystem::exists(file);
-#ifdef __GLIBC__
-    // ML takes as much as the matrix for a while, the most that a run ever has:
-    // what was freed before, in pieces too small for it, goes back first.
-    malloc_trim(0);
-#endif
+    const std::string  file      = "amesos-failure.dat";
+    const bool         was_there = std::filesystem::exists(file);
     std::ostringstream said;
     const auto         screen = std::cout.rdbuf(said.rdbuf());
     bool               failed = false;

@@ -198,6 +198,7 @@ namespace
   private:
     static constexpr double n_nodes = Footprints<dim>::n_nodes;
     static constexpr double n_g     = dim * dim; ///< values of a gradient
+    static constexpr double n_t     = n_g * (n_g + 1) / 2; ///< of a tangent
 
     /** Of one point, so that all yield. */
     inline static const Overrides plastic_block =
@@ -297,7 +298,7 @@ namespace
             add_kernel(
               std::string("law: ") + (yields ? "von Mises" : "elastic") +
                 (with_tangent ? " with tangent" : ""),
-              per_point(law_bytes(*model) + with_tangent * n_g * n_g * real,
+              per_point(law_bytes(*model) + with_tangent * n_t * real,
                         elastic_flops + yields * plastic_flops +
                           with_tangent * tangent_flops),
               [=]() { model->problem->response.evaluate(with_tangent); },
@@ -312,7 +313,7 @@ namespace
 
       // Entries, places and slopes of the points by patch, tangents.
       const double bytes =
-        n_g * n_g * real + 2 * integer + patch_bytes +
+        n_t * real + 2 * integer + patch_bytes +
         n_entries * (integer + n_nodes * integer + n_nodes * dim * real);
       add_kernel("matrices of patches", per_point(bytes, matrix_flops), [=]() {
         forces->add_matrix(false, [](const auto &, auto &block) {
@@ -357,7 +358,7 @@ namespace
         [=]() { matrix->vmult(compact[0], compact[1]); },
         assemble);
       add_kernel("matrix-free product",
-                 per_point(slope_bytes + n_g * n_g * real + 2 * node_bytes,
+                 per_point(slope_bytes + n_t * real + 2 * node_bytes,
                            2 * slope_flops + 2 * n_g * n_g),
                  [=]() { elastic->balance().vmult(full[0], full[1]); });
 

@@ -152,6 +152,8 @@ namespace impm
               const Footprints<dim>     &footprints,
               const Discretization<dim> &discretization)
   {
+    // Lumped; hanging nodes hand theirs to their masters, so that the sums
+    // over all nodes stay those over all points.
     Vector                      mass;
     std::vector<Tensor<1, dim>> at_points(points.size());
     for (unsigned int p = 0; p < points.size(); ++p)
@@ -173,8 +175,6 @@ namespace impm
                 const Discretization<dim> &discretization)
   {
     NodalMotion motion;
-    // Lumped; hanging nodes hand theirs to their masters, so that the sums
-    // over all nodes stay those over all points.
     if (const auto &state = grid.nodal_state(); state.velocity.size() > 0)
       {
         motion.mass = gather_mass(points, footprints, discretization);

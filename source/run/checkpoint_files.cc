@@ -18,7 +18,7 @@ namespace impm
   namespace
   {
     /** Changes with what the files hold. */
-    const unsigned int format = 1;
+    const unsigned int format = 2;
 
     /** The files of a checkpoint but for its json, in the order of names. */
     std::map<std::string, fs::path>

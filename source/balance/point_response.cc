@@ -16,10 +16,10 @@ namespace impm
     /** Adds the values of points to a list that has n for each. */
     template <typename ValueOf>
     void
-    add_to(std::vector<double>     &list,
-           const unsigned int       n,
-           const PointBatch<Lanes> &batch,
-           const ValueOf           &value_of)
+    add_to(std::vector<double> &list,
+           const unsigned int   n,
+           const PointBatch    &batch,
+           const ValueOf       &value_of)
     {
       for (unsigned int i = 0; i < n; ++i)
         batch.scatter(value_of(i),
@@ -66,17 +66,15 @@ namespace impm
   }
 
   template <int dim>
-  template <typename Number>
   unsigned int
   PointResponse<dim>::evaluate_batch(const unsigned int first,
                                      const bool         with_tangent,
-                                     Batch<Number>     &batch)
+                                     Batch             &batch)
   {
     batch.law   = &points.material(first);
     batch.first = first;
     batch.size  = 1;
-    while (batch.size < n_lanes_of<Number> &&
-           first + batch.size < points.size() &&
+    while (batch.size < n_lanes && first + batch.size < points.size() &&
            &points.material(first + batch.size) == batch.law)
       ++batch.size;
 
@@ -94,56 +92,49 @@ namespace impm
 
   template <int dim>
   bool
-  PointResponse<dim>::evaluate_law(Batch<Lanes> &batch, const bool with_tangent)
+  PointResponse<dim>::evaluate_law(Batch &batch, const bool with_tangent)
   {
     const auto start =
       points.layout.load_tensor(batch.template places<const double>(
         [&](auto p) { return points.fields(p) + points.offset_deformation; }));
+    const auto history = batch.template places<const double>(
+      [&](auto p) { return points.fields(p) + points.offset_history; });
+    const auto trial_history = batch.template places<double>(
+      [&](auto p) { return histories.data() + p * points.history_size(); });
+    Lanes *matrix = with_tangent ? batch.spatial.data() : nullptr;
+    if (is_plane_stress)
+      {
+        Lanes      count = 0.;
+        const bool fine  = evaluate_plane_stress(*batch.law,
+                                                start,
+                                                dt,
+                                                history,
+                                                trial_history,
+                                                batch.increment,
+                                                batch.response,
+                                                matrix,
+                                                count);
+        batch.scatter(count, [&](const double n, unsigned int) {
+          n_evaluations += static_cast<unsigned long>(n);
+        });
+        batch.store(&batch.increment[2][2], thickening, 1);
+        return fine;
+      }
+    n_evaluations += batch.size;
     batch.total = batch.increment * start;
-    if (!batch.law->evaluate({batch.increment,
-                              batch.total,
-                              dt,
-                              batch.template places<const double>([&](auto p) {
-                                return points.fields(p) + points.offset_history;
-                              }),
-                              batch.template places<double>([&](auto p) {
-                                return histories.data() +
-                                       p * points.history_size();
-                              })},
-                             with_tangent,
-                             batch.response))
+    if (!batch.law->evaluate(
+          {batch.increment, batch.total, dt, history, trial_history},
+          with_tangent,
+          batch.response))
       return false;
     if (with_tangent)
-      kinematics.spatial_tangent(batch.response,
-                                 batch.law->form(),
-                                 batch.spatial.data());
+      kinematics.spatial_tangent(batch.response, batch.law->form(), matrix);
     return true;
   }
 
   template <int dim>
-  bool
-  PointResponse<dim>::evaluate_law(Batch<double> &batch,
-                                   const bool     with_tangent)
-  {
-    const double *fields = points.fields(batch.first);
-    const bool    fine   = evaluate_plane_stress(
-      *batch.law,
-      points.layout.load_tensor(fields + points.offset_deformation),
-      dt,
-      fields + points.offset_history,
-      histories.data() + batch.first * points.history_size(),
-      batch.increment,
-      batch.response,
-      with_tangent ? batch.spatial.data() : nullptr,
-      n_evaluations);
-    thickening[batch.first] = batch.increment[2][2];
-    return fine;
-  }
-
-  template <int dim>
-  template <typename Number>
   void
-  PointResponse<dim>::carry_back(Batch<Number> &batch, const bool with_tangent)
+  PointResponse<dim>::carry_back(Batch &batch, const bool with_tangent)
   {
     const unsigned int n_g = kinematics.size;
     const bool linearized  = batch.law->form() == Material::Form::linearized;
@@ -159,19 +150,19 @@ namespace impm
         // that of a linearized law counts from the volume at the start
         auto stress = response.kirchhoff_stress;
         if (linearized)
-          stress *= Number(determinant(batch.increment));
+          stress *= determinant(batch.increment);
         points.layout.store_symmetric(
           stress, batch.template places<double>([&](const unsigned int p) {
             return &end_stresses[p * n_stress];
           }));
       }
-    const Tensor<2, 3, Number> inverse =
-      linearized ? Tensor<2, 3, Number>(unit_symmetric_tensor<3, Number>()) :
+    const Tensor<2, 3, Lanes> inverse =
+      linearized ? Tensor<2, 3, Lanes>(unit_symmetric_tensor<3, Lanes>()) :
                    invert(kinematics.deformation(batch.gradient.data()));
-    Number *matrix = with_tangent ? batch.spatial.data() : nullptr;
+    Lanes *matrix = with_tangent ? batch.spatial.data() : nullptr;
     if (average.includes(batch.first))
       average.take_out_pressure(batch, volume, inverse, response, matrix);
-    typename Kinematics<dim>::template List<Number> stress;
+    typename Kinematics<dim>::template List<Lanes> stress;
     kinematics.carry_back(kinematics.list(response.kirchhoff_stress),
                           inverse,
                           volume,
@@ -179,7 +170,7 @@ namespace impm
     batch.store(stress.data(), stresses, n_g);
     if (!with_tangent)
       return;
-    typename Kinematics<dim>::template Matrix<Number> tangent;
+    typename Kinematics<dim>::template Matrix<Lanes> tangent;
     kinematics.carry_back_tangent(matrix, inverse, volume, tangent.data());
     const auto to = batch.template places<double>(
       [&](const unsigned int p) { return &tangents[p * entries.size()]; });
@@ -191,40 +182,25 @@ namespace impm
   bool
   PointResponse<dim>::evaluate(const bool with_tangent)
   {
-    n_evaluations += is_plane_stress ? 0 : points.size();
     potential = 0;
     if (!average.measure(gradients, with_tangent))
       return false;
     if (with_tangent) // explicit steps never ask for it
       tangents.resize(points.size() * entries.size());
-    const auto evaluate_all = [&](auto &batch) {
-      unsigned int size = 0;
-      for (unsigned int p = 0; p < points.size(); p += size)
-        if ((size = evaluate_batch(p, with_tangent, batch)) == 0)
-          return false;
-      return true;
-    };
-    if (is_plane_stress)
-      {
-        Batch<double> batch;
-        if (!evaluate_all(batch))
-          return false;
-      }
-    else
-      {
-        Batch<Lanes> batch;
-        if (!evaluate_all(batch))
-          return false;
-      }
+    Batch        batch;
+    unsigned int size = 0;
+    for (unsigned int p = 0; p < points.size(); p += size)
+      if ((size = evaluate_batch(p, with_tangent, batch)) == 0)
+        return false;
     average.share_pressure(
       gradients,
       with_tangent,
-      [&](const auto &batch, const auto &stress, const auto &tangent) {
-        add_to(stresses, kinematics.size, batch, [&](const unsigned int a) {
+      [&](const auto &shared, const auto &stress, const auto &tangent) {
+        add_to(stresses, kinematics.size, shared, [&](const unsigned int a) {
           return stress[a];
         });
         if (with_tangent)
-          add_to(tangents, entries.size(), batch, [&](const unsigned int k) {
+          add_to(tangents, entries.size(), shared, [&](const unsigned int k) {
             return tangent[entries[k]];
           });
       });

@@ -52,7 +52,7 @@ namespace impm
   }
 
   template <int dim>
-  PointBatch<Lanes>
+  PointBatch
   VolumeAverage<dim>::next_batch(unsigned int first) const
   {
     const unsigned int n = groups.size();
@@ -100,19 +100,17 @@ namespace impm
   }
 
   template <int dim>
-  template <typename Number>
   void
-  VolumeAverage<dim>::take_out_pressure(
-    const PointBatch<Number>        &batch,
-    const Number                    &volume,
-    const Tensor<2, 3, Number>      &inverse,
-    Material::BasicResponse<Number> &response,
-    Number                          *matrix)
+  VolumeAverage<dim>::take_out_pressure(const PointBatch          &batch,
+                                        const Lanes               &volume,
+                                        const Tensor<2, 3, Lanes> &inverse,
+                                        Material::Responses       &response,
+                                        Lanes                     *matrix)
   {
     const unsigned int n_g = kinematics.size;
     const double       n   = kinematics.n_dilating;
     auto              &tau = response.kirchhoff_stress;
-    Number             pi  = 0.;
+    Lanes              pi  = 0.;
     for (unsigned int i = 0; i < n; ++i)
       pi += tau[i][i] / n;
     batch.scatter(volume * pi, [&](const double value, const unsigned int p) {
@@ -121,12 +119,12 @@ namespace impm
 
     if (matrix != nullptr)
       {
-        using List = typename Kinematics<dim>::template List<Number>;
+        using List = typename Kinematics<dim>::template List<Lanes>;
         // K is `matrix`.
         const auto e = kinematics.list(unit_symmetric_tensor<3>());
         const auto t = kinematics.list(tau);
         List       Ke{};
-        Number     eKe = 0.;
+        Lanes      eKe = 0.;
         for (unsigned int a = 0; a < n_g; ++a)
           {
             for (unsigned int b = 0; b < n_g; ++b)
@@ -237,31 +235,4 @@ namespace impm
 
   template class VolumeAverage<2>;
   template class VolumeAverage<3>;
-
-  // Members that are templates themselves.
-  template void
-  VolumeAverage<2>::take_out_pressure(const PointBatch<double> &,
-                                      const double &,
-                                      const Tensor<2, 3> &,
-                                      Material::Response &,
-                                      double *);
-  template void
-  VolumeAverage<2>::take_out_pressure(const PointBatch<Lanes> &,
-                                      const Lanes &,
-                                      const Tensor<2, 3, Lanes> &,
-                                      Material::Responses &,
-                                      Lanes *);
-  template void
-  VolumeAverage<3>::take_out_pressure(const PointBatch<double> &,
-                                      const double &,
-                                      const Tensor<2, 3> &,
-                                      Material::Response &,
-                                      double *);
-  template void
-  VolumeAverage<3>::take_out_pressure(const PointBatch<Lanes> &,
-                                      const Lanes &,
-                                      const Tensor<2, 3, Lanes> &,
-                                      Material::Responses &,
-                                      Lanes *);
-
 } // namespace impm

@@ -113,10 +113,15 @@ namespace impm
           for (unsigned int i = 0; i < carriers.locally_owned_size(); ++i)
             if (rigid.holders_of_nodes[i / dim] == b + 1 && holds(i % dim))
               carriers.local_element(i) = value;
+        typename Triangulation<dim>::active_cell_iterator last;
         for (const auto &particle : rigid.bodies[b].points->particles)
           {
-            const auto cell =
-              discretization.with_dofs(particle.get_surrounding_cell());
+            // points of one cell come one after the other
+            const auto surrounding = particle.get_surrounding_cell();
+            if (surrounding == last)
+              continue;
+            last            = surrounding;
+            const auto cell = discretization.with_dofs(surrounding);
             for (const unsigned int v : cell->vertex_indices())
               for (unsigned int c = 0; c < dim; ++c)
                 if (holds(c))

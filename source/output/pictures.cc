@@ -112,6 +112,10 @@ namespace impm
 
     PointPatches writer;
     auto        &names = writer.names;
+    writer.flags.time  = time;
+    // the best compression hardly saves anything and takes six times as long
+    using Level                    = decltype(writer.flags.compression_level);
+    writer.flags.compression_level = Level::best_speed;
     for (const auto &field : fields)
       {
         field.prepare();
@@ -156,7 +160,6 @@ namespace impm
             patch.data(i, 0) = names[i] == "body" ? -1. - b : 0.;
           add(particle.get_location());
         }
-    writer.flags.time = time;
     save("particles", writer);
 
     DataOut<dim> grid_writer;

@@ -9,10 +9,9 @@
 namespace impm
 {
   /**
-   * Consecutive points, one in each lane of a number: the last one again where
-   * they are too few.
+   * Consecutive points, one in each lane: the last one again where they are too
+   * few.
    */
-  template <typename Number>
   struct PointBatch
   {
     unsigned int first, size;
@@ -25,49 +24,38 @@ namespace impm
 
     /** A value of each point. */
     template <typename ValueOf>
-    Number
+    Lanes
     gather(const ValueOf &value_of) const
     {
-      if constexpr (n_lanes_of<Number> == 1)
-        return value_of(first);
-      else
-        return Number(
-          [&](const unsigned int lane) { return value_of(point(lane)); });
+      return Lanes(
+        [&](const unsigned int lane) { return value_of(point(lane)); });
     }
 
     /** take(value, point) for each point. */
     template <typename Take>
     void
-    scatter(const Number &value, const Take &take) const
+    scatter(const Lanes &value, const Take &take) const
     {
-      if constexpr (n_lanes_of<Number> == 1)
-        take(value, first);
-      else
-        for (unsigned int lane = 0; lane < size; ++lane)
-          take(value[lane], first + lane);
+      for (unsigned int lane = 0; lane < size; ++lane)
+        take(value[lane], first + lane);
     }
 
     /** Where the values of the points begin, from where those of one do. */
     template <typename Value, typename PlaceOf>
-    Places<Number, Value>
+    Places<Lanes, Value>
     places(const PlaceOf &place_of) const
     {
-      if constexpr (n_lanes_of<Number> == 1)
-        return place_of(first);
-      else
-        {
-          Places<Number, Value> result;
-          for (unsigned int lane = 0; lane < n_lanes; ++lane)
-            result[lane] = place_of(point(lane));
-          return result;
-        }
+      Places<Lanes, Value> result;
+      for (unsigned int lane = 0; lane < n_lanes; ++lane)
+        result[lane] = place_of(point(lane));
+      return result;
     }
 
     /** Their values in a list that has n for each point. */
     void
     load(const std::vector<double> &list,
          const unsigned int         n,
-         Number                    *values) const
+         Lanes                     *values) const
     {
       const auto from = places<const double>(
         [&](const unsigned int p) { return list.data() + p * n; });
@@ -76,7 +64,7 @@ namespace impm
     }
 
     void
-    store(const Number        *values,
+    store(const Lanes         *values,
           std::vector<double> &list,
           const unsigned int   n) const
     {

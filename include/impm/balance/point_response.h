@@ -123,34 +123,27 @@ namespace impm
 
   private:
     /** Points of one law, on their way through evaluate(). */
-    template <typename Number>
-    struct Batch : public PointBatch<Number>
+    struct Batch : public PointBatch
     {
-      const Material                                   *law;
-      typename Kinematics<dim>::template List<Number>   gradient;
-      dealii::Tensor<2, 3, Number>                      increment, total;
-      Material::BasicResponse<Number>                   response;
-      typename Kinematics<dim>::template Matrix<Number> spatial; ///< tangent
+      const Material                                  *law;
+      typename Kinematics<dim>::template List<Lanes>   gradient;
+      dealii::Tensor<2, 3, Lanes>                      increment, total;
+      Material::Responses                              response;
+      typename Kinematics<dim>::template Matrix<Lanes> spatial; ///< tangent
     };
 
     /** At points that begin with `first`, as many as there are lanes, if they
      * are of one law. Returns their number, or none when a point has no stress.
      */
-    template <typename Number>
     unsigned int
-    evaluate_batch(unsigned int first, bool with_tangent, Batch<Number> &batch);
+    evaluate_batch(unsigned int first, bool with_tangent, Batch &batch);
 
     bool
-    evaluate_law(Batch<Lanes> &batch, bool with_tangent);
-
-    /** In plane stress, which a point finds alone. */
-    bool
-    evaluate_law(Batch<double> &batch, bool with_tangent);
+    evaluate_law(Batch &batch, bool with_tangent);
 
     /** Turns the response into stresses, tangents and potential. */
-    template <typename Number>
     void
-    carry_back(Batch<Number> &batch, bool with_tangent);
+    carry_back(Batch &batch, bool with_tangent);
 
     const MaterialPoints<dim> &points;
     const bool                 is_plane_stress;

@@ -70,17 +70,16 @@ namespace impm
      * pressures out of them. With a tangent, `matrix` comes as the spatial one
      * and goes as A_p without what depends on the others.
      */
-    template <typename Number>
     void
-    take_out_pressure(const PointBatch<Number>           &batch,
-                      const Number                       &volume,
-                      const dealii::Tensor<2, 3, Number> &inverse,
-                      Material::BasicResponse<Number>    &response,
-                      Number                             *matrix);
+    take_out_pressure(const PointBatch                  &batch,
+                      const Lanes                       &volume,
+                      const dealii::Tensor<2, 3, Lanes> &inverse,
+                      Material::Responses               &response,
+                      Lanes                             *matrix);
 
     /** Points, and what is added to their stresses and tangents. */
     using AddShare = std::function<
-      void(const PointBatch<Lanes> &,
+      void(const PointBatch &,
            const typename Kinematics<dim>::template List<Lanes> &,
            const typename Kinematics<dim>::template Matrix<Lanes> &)>;
 
@@ -113,7 +112,7 @@ namespace impm
   private:
     /** The next points that take part in something, from `first` on: in no
      * batch if there is none. */
-    PointBatch<Lanes>
+    PointBatch
     next_batch(unsigned int first) const;
 
     const Kinematics<dim>      &kinematics;

@@ -24,10 +24,6 @@ namespace impm
    */
   using Lanes = stdx::simd<double, stdx::simd_abi::deduce_t<double, n_lanes>>;
 
-  template <typename Number>
-  constexpr unsigned int n_lanes_of =
-    std::is_same_v<Number, Lanes> ? n_lanes : 1;
-
   inline Lanes
   load_lanes(const double *list)
   {

@@ -78,9 +78,16 @@ namespace impm
   dealii::SymmetricTensor<4, 3, Number>
   isotropic_tensor(const Number &volumetric, const Number &shear)
   {
-    const auto unit = dealii::unit_symmetric_tensor<3, Number>();
-    return volumetric * dealii::outer_product(unit, unit) +
-           shear * dealii::identity_tensor<3, Number>();
+    // by its stored entries: products of tensors would go through all 81
+    dealii::SymmetricTensor<4, 3, Number> result;
+    for (unsigned int i = 0; i < 3; ++i)
+      {
+        for (unsigned int j = 0; j < 3; ++j)
+          result.access_raw_entry(6 * i + j) = volumetric;
+        result.access_raw_entry(7 * i) += shear;
+        result.access_raw_entry(7 * (i + 3)) = 0.5 * shear;
+      }
+    return result;
   }
 
   /** Elastic constants of which a scene chooses the pair that it gives. */

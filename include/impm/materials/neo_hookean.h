@@ -62,9 +62,15 @@ namespace impm
           const Number mu = shear * (1. + dealii::trace(b_minus_1) / 3.);
           response.tangent =
             isotropic_tensor<Number>(volumetric - 2. / 3. * mu,
-                                     2. * (mu - pressure)) -
-            Number(2. / 3.) * (dealii::outer_product(shape, unit) +
-                               dealii::outer_product(unit, shape));
+                                     2. * (mu - pressure));
+          // less 2/3 (shape x 1 + 1 x shape)
+          for (unsigned int i = 0; i < 6; ++i)
+            for (unsigned int j = 0; j < 3; ++j)
+              {
+                const Number mixed = 2. / 3. * shape.access_raw_entry(i);
+                response.tangent.access_raw_entry(6 * i + j) -= mixed;
+                response.tangent.access_raw_entry(6 * j + i) -= mixed;
+              }
         }
       else if (with_tangent)
         response.tangent =

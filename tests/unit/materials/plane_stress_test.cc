@@ -17,20 +17,7 @@ namespace
     using LawPoint::LawPoint;
 
     bool
-    evaluate(Tensor<2, 3> increment)
-    {
-      const bool fine = evaluate_plane_stress(law,
-                                              F,
-                                              dt,
-                                              history.data(),
-                                              trial_history.data(),
-                                              increment,
-                                              response,
-                                              spatial.data(),
-                                              n_evaluations);
-      trial_F         = increment * F;
-      return fine;
-    }
+    evaluate(const Tensor<2, 3> &increment);
 
     // P and dP/d(dF) of the plane.
     std::pair<std::array<double, 4>, std::array<double, 16>>
@@ -55,9 +42,67 @@ namespace
       return result;
     }
 
-    unsigned long           n_evaluations = 0;
+    unsigned int            n_evaluations = 0;
     Kinematics<2>::Matrix<> spatial;
   };
+
+  // A sheet in each lane, all of one law.
+  bool
+  evaluate(const std::array<Sheet *, n_lanes>      &sheets,
+           const std::array<Tensor<2, 3>, n_lanes> &increments)
+  {
+    Tensor<2, 3, Lanes>          start, increment;
+    Places<Lanes, const double>  histories;
+    Places<Lanes, double>        trial_histories;
+    Material::Responses          responses;
+    Kinematics<2>::Matrix<Lanes> matrix;
+    Lanes                        n_evaluations = 0.;
+    for (unsigned int i = 0; i < n_lanes; ++i)
+      {
+        for (unsigned int a = 0; a < 3; ++a)
+          for (unsigned int b = 0; b < 3; ++b)
+            {
+              start[a][b][i]     = sheets[i]->F[a][b];
+              increment[a][b][i] = increments[i][a][b];
+            }
+        histories[i]       = sheets[i]->history.data();
+        trial_histories[i] = sheets[i]->trial_history.data();
+      }
+    const bool fine = evaluate_plane_stress(sheets[0]->law,
+                                            start,
+                                            sheets[0]->dt,
+                                            histories,
+                                            trial_histories,
+                                            increment,
+                                            responses,
+                                            matrix.data(),
+                                            n_evaluations);
+    for (unsigned int i = 0; i < n_lanes; ++i)
+      {
+        Sheet &sheet             = *sheets[i];
+        auto   taken             = increments[i];
+        taken[2][2]              = increment[2][2][i];
+        sheet.trial_F            = taken * sheet.F;
+        sheet.response.potential = responses.potential[i];
+        for (unsigned int a = 0; a < 6; ++a)
+          sheet.response.kirchhoff_stress.access_raw_entry(a) =
+            responses.kirchhoff_stress.access_raw_entry(a)[i];
+        for (unsigned int k = 0; k < sheet.spatial.size(); ++k)
+          sheet.spatial[k] = matrix[k][i];
+        sheet.n_evaluations = static_cast<unsigned int>(n_evaluations[i]);
+      }
+    return fine;
+  }
+
+  bool
+  Sheet::evaluate(const Tensor<2, 3> &increment)
+  {
+    std::array<Sheet *, n_lanes>      sheets;
+    std::array<Tensor<2, 3>, n_lanes> increments;
+    sheets.fill(this);
+    increments.fill(increment);
+    return ::evaluate(sheets, increments);
+  }
 
   Tensor<2, 3>
   in_the_plane(std::mt19937 &generator, const double size)
@@ -165,6 +210,44 @@ TEST(PlaneStress, TangentsAreDerivatives)
             EXPECT_LT(asymmetry, 1e-14);
           }
       }
+}
+
+
+// One at rest, one hardly strained, and two that iterate: none knows of the
+// others, to the last bit.
+TEST(PlaneStress, LanesEndEachForItself)
+{
+  std::mt19937 generator(3);
+  for (const auto &named : all_solids(GeometryKind::plane_stress))
+    {
+      SCOPED_TRACE(named.name);
+      std::vector<Sheet>                alone(n_lanes, Sheet(named));
+      std::array<Tensor<2, 3>, n_lanes> increments;
+      for (unsigned int i = 0; i < n_lanes; ++i)
+        {
+          const double sizes[] = {0., 1e-7, 0.1, 0.2};
+          increments[i]        = in_the_plane(generator, sizes[i % 4]);
+          ASSERT_TRUE(alone[i].evaluate(increments[i]));
+        }
+      auto                         together = alone;
+      std::array<Sheet *, n_lanes> sheets;
+      for (unsigned int i = 0; i < n_lanes; ++i)
+        sheets[i] = &together[i];
+      ASSERT_TRUE(evaluate(sheets, increments));
+      EXPECT_LT(together[0].n_evaluations, together[n_lanes - 1].n_evaluations);
+      for (unsigned int i = 0; i < n_lanes; ++i)
+        {
+          EXPECT_EQ(together[i].n_evaluations, alone[i].n_evaluations);
+          EXPECT_EQ(together[i].trial_F, alone[i].trial_F);
+          EXPECT_EQ(together[i].trial_history, alone[i].trial_history);
+          EXPECT_EQ(together[i].spatial, alone[i].spatial);
+          EXPECT_EQ(together[i].response.kirchhoff_stress,
+                    alone[i].response.kirchhoff_stress);
+        }
+      // where one has no stress, none has
+      increments[1] = diagonal(-1., 1., 1.);
+      EXPECT_FALSE(evaluate(sheets, increments));
+    }
 }
 
 

@@ -1,5 +1,6 @@
 #include <impm/balance/momentum_balance.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -306,6 +307,31 @@ namespace impm
               modes[mode][i] = c == a ? -place[b] : c == b ? place[a] : 0.;
       }
     return modes;
+  }
+
+  template <int dim>
+  NodeLattice
+  MomentumBalance<dim>::lattice(const Unknowns &unknowns) const
+  {
+    const auto &nodes    = parts.discretization.numbering->lattice;
+    const auto  place_of = [&](const unsigned int node) {
+      NodeLattice::Place place{};
+      std::copy(nodes[node].place.begin(),
+                nodes[node].place.end(),
+                place.begin());
+      return place;
+    };
+    NodeLattice result;
+    for (const unsigned int node : unknowns.nodes)
+      {
+        result.places.push_back(place_of(node));
+        result.extents.push_back(nodes[node].extent);
+      }
+    const auto &carrier = parts.constraints.carrier;
+    for (unsigned int i = 0; i < dim * nodes.size(); ++i)
+      if (carrier[i] != StepConstraints<dim>::no_carrier)
+        result.prescribed.push_back({place_of(i / dim), i % dim});
+    return result;
   }
 
   template class MomentumBalance<2>;

@@ -51,7 +51,7 @@ namespace impm
       }
     place_vertices();
     current = std::make_shared<Discretization<dim>>(
-      std::make_shared<NodeNumbering<dim>>(triangulation, 1),
+      std::make_shared<NodeNumbering<dim>>(triangulation, coarse_cells, 1),
       state.displacement);
     moved = is_lagrangian;
     if (moved)
@@ -147,6 +147,7 @@ namespace impm
     place_vertices();
     current = std::make_shared<Discretization<dim>>(
       std::make_shared<NodeNumbering<dim>>(triangulation,
+                                           coarse_cells,
                                            current->numbering->epoch + 1),
       state.displacement);
   }
@@ -180,7 +181,7 @@ namespace impm
     triangulation.load(file_name);
     place_vertices();
     current = std::make_shared<Discretization<dim>>(
-      std::make_shared<NodeNumbering<dim>>(triangulation, epoch),
+      std::make_shared<NodeNumbering<dim>>(triangulation, coarse_cells, epoch),
       state.displacement);
   }
 

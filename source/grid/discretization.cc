@@ -13,9 +13,39 @@ namespace impm
 {
   using namespace dealii;
 
+  namespace
+  {
+    /** Lower corner of a cell of this extent, where the coarsest stand in rows
+     * of so many. */
+    template <int dim>
+    std::array<int, dim>
+    corner_on_lattice(const typename Triangulation<dim>::cell_iterator &cell,
+                      const std::vector<unsigned int> &coarse_cells,
+                      const int                        extent)
+    {
+      auto ancestor = cell; // p4est numbers them in an order of its own
+      while (ancestor->level() > 0)
+        ancestor = ancestor->parent();
+      const auto           id    = cell->id();
+      int                  place = ancestor->index();
+      std::array<int, dim> corner;
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          const int n = coarse_cells[d];
+          corner[d]   = place % n;
+          place /= n;
+          for (const auto child : id.get_child_indices())
+            corner[d] = 2 * corner[d] + (child >> d & 1u);
+          corner[d] *= extent;
+        }
+      return corner;
+    }
+  } // namespace
+
   template <int dim>
   NodeNumbering<dim>::NodeNumbering(
     const parallel::TriangulationBase<dim> &triangulation,
+    const std::vector<unsigned int>        &coarse_cells,
     const unsigned int                      epoch)
     : epoch(epoch)
     , triangulation(triangulation)
@@ -65,6 +95,31 @@ namespace impm
         if (owned.is_element(line.index))
           hanging.push_back(index / dim);
       }
+
+    int finest = 0;
+    for (const auto &cell : dof_handler.active_cell_iterators())
+      if (!cell->is_artificial())
+        finest = std::max(finest, cell->level());
+    finest = Utilities::MPI::max(finest, communicator);
+    lattice.resize(owned.n_elements() / dim, {{}, 1 << finest});
+    for (const auto &cell : dof_handler.active_cell_iterators())
+      if (!cell->is_artificial())
+        {
+          const int  extent = 1 << (finest - cell->level());
+          const auto corner =
+            corner_on_lattice<dim>(cell, coarse_cells, extent);
+          for (const unsigned int v : cell->vertex_indices())
+            {
+              const unsigned int node =
+                partitioner->global_to_local(cell->vertex_dof_index(v, 0)) /
+                dim;
+              if (node >= lattice.size())
+                continue;
+              lattice[node].extent = std::min(lattice[node].extent, extent);
+              for (unsigned int d = 0; d < dim; ++d)
+                lattice[node].place[d] = corner[d] + (v >> d & 1u) * extent;
+            }
+        }
   }
 
   template <int dim>

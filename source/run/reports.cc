@@ -64,7 +64,7 @@ namespace impm
                                {"line_searches", total.line_searches},
                                {"step_cuts", total.step_cuts},
                                {"tangents", counts.tangents},
-                               {"amg_hierarchies", counts.hierarchies},
+                               {"multigrid_hierarchies", counts.hierarchies},
                                {"tangent_projections", total.projections},
                                {"solver_fallbacks", counts.solver_fallbacks},
                                {"noise_stops", total.noise_stops},

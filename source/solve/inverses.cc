@@ -18,14 +18,6 @@ namespace impm
 
   namespace
   {
-    [[noreturn]] void
-    blame_matrix()
-    {
-      throw LinearizationError(
-        "the linear system is singular (a body that nothing holds, or with too few "
-        "points for its grid?)");
-    }
-
     struct Amg
     {
       TrilinosWrappers::PreconditionAMG preconditioner;
@@ -38,6 +30,14 @@ namespace impm
       TrilinosWrappers::SolverDirect solver{control};
     };
   } // namespace
+
+  void
+  blame_matrix()
+  {
+    throw LinearizationError(
+      "the linear system is singular (a body that nothing holds, or with too few "
+      "points for its grid?)");
+  }
 
   LinearMap
   make_amg(const SparseMatrix                     &matrix,

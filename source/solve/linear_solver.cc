@@ -22,8 +22,7 @@ namespace impm
     , unknowns(system.make_unknowns())
     , kind(choose_linear_solver(spec, unknowns.n_components, unknowns.size()))
     , needs_matrix(kind == LinearSolverKind::direct ||
-                   spec.tangent == TangentKind::matrix ||
-                   spec.preconditioner == PreconditionerKind::amg)
+                   spec.tangent == TangentKind::matrix || spec.has_hierarchy())
   {
     ++(kind == LinearSolverKind::direct ? system.counts->direct_systems :
                                           system.counts->iterative_systems);
@@ -77,12 +76,12 @@ namespace impm
       assemble();
     if (kind == LinearSolverKind::direct)
       return;
-    if (spec.preconditioner == PreconditionerKind::amg)
+    if (spec.has_hierarchy())
       {
-        amg_is_old = preconditioner.vmult && !amg_is_worn &&
-                     place_of_amg == matrix->place_of_entries();
-        if (!amg_is_old)
-          set_up_amg();
+        hierarchy_is_old = preconditioner.vmult && !hierarchy_is_worn &&
+                           place_of_matrix == matrix->place_of_entries();
+        if (!hierarchy_is_old)
+          set_up_hierarchy();
         return;
       }
     preconditioner = {};
@@ -107,39 +106,41 @@ namespace impm
   }
 
   void
-  LinearSolver::set_up_amg()
+  LinearSolver::set_up_hierarchy()
   {
     TimerOutput::Scope scope(timer, "preconditioner");
     ++system.counts->hierarchies;
-    preconditioner = {}; // two at a time were the peak of a run's memory
-    preconditioner = make_amg(*matrix, system.near_null_space(unknowns));
-    amg_is_old     = false;
-    place_of_amg   = matrix->place_of_entries();
+    preconditioner   = {}; // two at a time were the peak of a run's memory
+    preconditioner   = spec.preconditioner == PreconditionerKind::amg ?
+                         make_amg(*matrix, system.near_null_space(unknowns)) :
+                         make_multigrid(*matrix, system.lattice(unknowns));
+    hierarchy_is_old = false;
+    place_of_matrix  = matrix->place_of_entries();
   }
 
   unsigned int
   LinearSolver::iterate_or_renew()
   {
-    if (spec.preconditioner != PreconditionerKind::amg)
+    if (!spec.has_hierarchy())
       return iterate();
     // One of an earlier tangent does for this one, too, until it costs about
     // as many iterations as a new one costs time, or lets them fail.
     constexpr unsigned int worth_a_new_one = 10;
-    if (amg_is_old)
+    if (hierarchy_is_old)
       try
         {
           const unsigned int n = iterate();
-          amg_is_worn          = n > iterations_when_new + worth_a_new_one;
+          hierarchy_is_worn    = n > iterations_when_new + worth_a_new_one;
           return n;
         }
       catch (const ExceptionBase &)
         {
           solution = 0;
-          set_up_amg();
+          set_up_hierarchy();
         }
-    amg_is_worn         = true; // if this fails
+    hierarchy_is_worn   = true; // if this fails
     iterations_when_new = iterate();
-    amg_is_worn         = false;
+    hierarchy_is_worn   = false;
     return iterations_when_new;
   }
 

@@ -16,8 +16,7 @@ namespace impm
     bool
     may_be_direct(const SolverSpec &spec)
     {
-      return spec.tangent == TangentKind::matrix &&
-             spec.preconditioner == PreconditionerKind::amg;
+      return spec.tangent == TangentKind::matrix && spec.has_hierarchy();
     }
 
     std::string
@@ -28,6 +27,8 @@ namespace impm
       const std::string method = kind == LinearSolverKind::cg ? "CG" : "GMRES";
       switch (spec.preconditioner)
         {
+          case PreconditionerKind::multigrid:
+            return method + " with multigrid";
           case PreconditionerKind::amg:
             return method + " with AMG";
           case PreconditionerKind::jacobi:

@@ -18,7 +18,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <impm/app/mpi_start.h>
-#include <impm/solve/inverses.h>
+#include <impm/solve/multigrid.h>
 #include <impm/solve/trilinos_matrix.h>
 
 #include <benchmark/benchmark.h>
@@ -364,24 +364,32 @@ namespace
 
       Work set_up  = product;
       set_up.bytes = set_up.flops = 0;
-      const auto make             = [=]() {
-        amg = make_amg(*matrix, elastic->balance().near_null_space(*unknowns));
-      };
-      add_kernel("AMG: set-up", set_up, make, assemble);
       // Products with the finest matrix: one before and two after the
       // residual's own, by Chebyshev polynomials of degree two. Coarser levels
       // are on top.
       Work cycle = product;
       cycle.bytes *= 4;
       cycle.flops *= 4;
-      add_kernel(
-        "AMG: one cycle",
-        cycle,
-        [=]() { amg.vmult(compact[0], compact[1]); },
-        [=]() {
-          assemble();
-          make();
-        });
+      for (const std::string name : {"multigrid", "AMG"})
+        {
+          const auto make = [=]() {
+            inverse = {};
+            inverse =
+              name == "AMG" ?
+                make_amg(*matrix,
+                         elastic->balance().near_null_space(*unknowns)) :
+                make_multigrid(*matrix, elastic->balance().lattice(*unknowns));
+          };
+          add_kernel(name + ": set-up", set_up, make, assemble);
+          add_kernel(
+            name + ": one cycle",
+            cycle,
+            [=]() { inverse.vmult(compact[0], compact[1]); },
+            [=]() {
+              assemble();
+              make();
+            });
+        }
     }
 
     void
@@ -445,7 +453,7 @@ namespace
     Vector                            increment;
     std::unique_ptr<Unknowns>         unknowns;
     std::unique_ptr<SparseMatrix>     matrix;
-    LinearMap                         amg;
+    LinearMap                         inverse;
 
     // What the kernels work on.
     std::array<Vector, 2>      full, compact;

@@ -120,6 +120,9 @@ namespace impm
     std::vector<std::vector<double>>
     near_null_space(const Unknowns &unknowns) const override;
 
+    NodeLattice
+    lattice(const Unknowns &unknowns) const override;
+
     void
     initialize(Vector &vector) const override
     {

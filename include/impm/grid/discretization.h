@@ -29,8 +29,10 @@ namespace impm
   template <int dim>
   struct NodeNumbering
   {
-    /** Collective. */
+    /** The coarsest cells stand in rows along the axes, so many along each,
+     * the first axis first. Collective. */
     NodeNumbering(const dealii::parallel::TriangulationBase<dim> &triangulation,
+                  const std::vector<unsigned int>                &coarse_cells,
                   unsigned int                                    epoch);
 
     /** Counts the grids: grows when cells are refined, coarsened or sent to
@@ -51,6 +53,16 @@ namespace impm
      * weights; an empty list if none hangs. */
     std::vector<std::vector<std::pair<unsigned int, double>>> masters;
     const bool any_hanging; ///< on any rank
+
+    /** A node among others, whatever the shape of the grid: in units of its
+     * smallest cells. */
+    struct LatticeNode
+    {
+      std::array<int, dim> place;  ///< from the lower corner
+      int                  extent; ///< of the smallest cells around it
+    };
+
+    std::vector<LatticeNode> lattice; ///< of the nodes that this rank owns
   };
 
   /**

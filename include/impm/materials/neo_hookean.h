@@ -59,10 +59,9 @@ namespace impm
       if (with_tangent && decoupled)
         {
           // eq. 21 times J, where the mu of 2 mu [...] is G tr(b) / (3 J^(2/3))
-          const Number mu = shear * (1. + dealii::trace(b_minus_1) / 3.);
-          response.tangent =
-            isotropic_tensor<Number>(volumetric - 2. / 3. * mu,
-                                     2. * (mu - pressure));
+          const Number mu  = shear * (1. + dealii::trace(b_minus_1) / 3.);
+          response.tangent = isotropic_tensor<Number>(volumetric - 2. / 3. * mu,
+                                                      2. * (mu - pressure));
           // less 2/3 (shape x 1 + 1 x shape)
           for (unsigned int i = 0; i < 6; ++i)
             for (unsigned int j = 0; j < 3; ++j)

@@ -14,8 +14,12 @@ namespace impm
     std::function<void(Vector &dst, const Vector &src)> vmult;
   };
 
-  /** Unknowns of a system that AMG factorizes rather than make it coarser: to
-   * factorize more is dear in space, not in the plane. */
+  /** Throws LinearizationError for a matrix without an inverse. */
+  [[noreturn]] void
+  blame_matrix();
+
+  /** Unknowns of a system that multigrid factorizes rather than make it
+   * coarser: to factorize more is dear in space, not in the plane. */
   inline unsigned int
   largest_coarse_system(const unsigned int dim)
   {

@@ -11,10 +11,11 @@ namespace impm
 {
   /**
    * Solves the linear systems of Newton's method in one step: CG or GMRES of
-   * deal.II with AMG, Jacobi or no preconditioner, or a direct solver, which
-   * also takes over, counted, where an iterative one fails, unless what it has
-   * then is good enough for Newton's method to go on. One that was chosen
-   * automatically and fails is not tried again in this step. All is collective.
+   * deal.II with multigrid, Jacobi or no preconditioner, or a direct solver,
+   * which also takes over, counted, where an iterative one fails, unless what
+   * it has then is good enough for Newton's method to go on. One that was
+   * chosen automatically and fails is not tried again in this step. All is
+   * collective.
    */
   class LinearSolver
   {
@@ -33,7 +34,7 @@ namespace impm
 
     /**
      * Takes the tangent as it is now: assembles it, makes the preconditioner,
-     * as far as they are wanted. AMG hierarchies are kept while they are good
+     * as far as they are wanted. Hierarchies are kept while they are good
      * enough.
      */
     void
@@ -52,7 +53,7 @@ namespace impm
     assemble();
 
     void
-    set_up_amg();
+    set_up_hierarchy();
 
     unsigned int
     iterate();
@@ -72,10 +73,10 @@ namespace impm
     const bool                    needs_matrix; ///< of every tangent
     std::unique_ptr<SparseMatrix> matrix;
     LinearMap                     preconditioner; ///< if there is one
-    // The AMG hierarchy: of an earlier tangent, not good enough for the next.
-    bool         amg_is_old = false, amg_is_worn = false;
+    // The hierarchy: of an earlier tangent, not good enough for the next.
+    bool         hierarchy_is_old = false, hierarchy_is_worn = false;
     unsigned int iterations_when_new = 0; ///< of a solve
-    unsigned int place_of_amg        = 0; ///< of the matrix that it knows
+    unsigned int place_of_matrix     = 0; ///< of the matrix that it knows
     std::unique_ptr<DirectSolver> direct; ///< once it was needed
     bool is_factorized = false;           ///< the matrix as it is
 

@@ -11,8 +11,8 @@ namespace impm
   /**
    * What solves a linear system of so many unknowns, of all ranks: what the
    * file says or, where that is left open, a direct solver for a system that
-   * AMG would factorize anyway, as a coarsest level (inverses.h). Larger ones
-   * go to CG or, where the matrix is not symmetric, to GMRES; so do all of
+   * multigrid would factorize anyway, as a coarsest level (inverses.h). Larger
+   * ones go to CG or, where the matrix is not symmetric, to GMRES; so do all of
    * those whose operator or preconditioner only these have. Ranks do not
    * matter: a run is the same on any number of them.
    */

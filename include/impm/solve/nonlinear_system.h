@@ -1,7 +1,7 @@
 #ifndef impm_solve_nonlinear_system_h
 #define impm_solve_nonlinear_system_h
 
-#include <impm/solve/sparse_matrix.h>
+#include <impm/solve/multigrid.h>
 
 namespace impm
 {
@@ -11,7 +11,7 @@ namespace impm
     unsigned long stress_evaluations    = 0; ///< of a point, on this rank
     unsigned long operator_applications = 0; ///< of a tangent
     unsigned int  tangents              = 0; ///< that were taken
-    unsigned int  hierarchies           = 0; ///< of AMG that were made
+    unsigned int  hierarchies           = 0; ///< of multigrid, of either kind
     unsigned int  solver_fallbacks      = 0; ///< to the direct solver
     // Steps, or attempts at them, by what their linear systems are meant for.
     unsigned int direct_systems = 0, iterative_systems = 0;
@@ -105,6 +105,10 @@ namespace impm
     /** Directions that cost hardly any energy, by owned compact index. */
     virtual std::vector<std::vector<double>>
     near_null_space(const Unknowns &unknowns) const = 0;
+
+    /** Where the unknowns are. */
+    virtual NodeLattice
+    lattice(const Unknowns &unknowns) const = 0;
 
     /** A vector of unknowns, zero. */
     virtual void

@@ -98,12 +98,13 @@ namespace impm
     void
     add_linear_solver(const Section &section, SolverSpec &solver)
     {
-      section.add(linear_solvers,
-                  solver.linear_solver,
-                  "For the Newton steps. Automatic: direct for small systems, "
-                  "else CG or, where the matrix is not symmetric, GMRES; the "
-                  "latter two in any case where another preconditioner than "
-                  "AMG or another operator than the matrix is asked for.");
+      section.add(
+        linear_solvers,
+        solver.linear_solver,
+        "For the Newton steps. Automatic: direct for small systems, "
+        "else CG or, where the matrix is not symmetric, GMRES; the "
+        "latter two in any case where another preconditioner than "
+        "multigrid or another operator than the matrix is asked for.");
       if (solver.linear_solver != LinearSolverKind::direct)
         {
           section.add("Linear tolerance",
@@ -118,19 +119,23 @@ namespace impm
                       solver.accept_unfinished,
                       {{"direct solver", false}, {"next Newton step", true}},
                       "Who takes over after the largest number.");
-          section.add("Preconditioner",
-                      solver.preconditioner,
-                      {{"AMG", PreconditionerKind::amg},
-                       {"Jacobi", PreconditionerKind::jacobi},
-                       {"none", PreconditionerKind::none}},
-                      "AMG: smoothed aggregation of Trilinos ML with the "
-                      "rigid-body modes.");
-          section.add(tangents,
-                      solver.tangent,
-                      "How the tangent is applied; AMG needs the matrix in "
-                      "any case. Difference quotient: of residuals (Sulsky & "
-                      "Kaul 2004, eq. 2.4.18), one evaluation of all laws "
-                      "each time.");
+          section.add(
+            "Preconditioner",
+            solver.preconditioner,
+            {{"multigrid", PreconditionerKind::multigrid},
+             {"AMG", PreconditionerKind::amg},
+             {"Jacobi", PreconditionerKind::jacobi},
+             {"none", PreconditionerKind::none}},
+            "Multigrid: geometric, on the grid and coarser ones. "
+            "AMG: algebraic, smoothed aggregation of Trilinos ML with "
+            "the rigid-body modes.");
+          section.add(
+            tangents,
+            solver.tangent,
+            "How the tangent is applied; multigrid of either kind "
+            "needs the matrix in any case. Difference quotient: of residuals (Sulsky & "
+            "Kaul 2004, eq. 2.4.18), one evaluation of all laws "
+            "each time.");
           if (section.may_be(tangents, TangentKind::difference_quotient))
             section.add("Difference step",
                         solver.difference_step,

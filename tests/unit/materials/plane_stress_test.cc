@@ -43,7 +43,7 @@ namespace
     }
 
     unsigned int            n_evaluations = 0;
-    Kinematics<2>::Matrix<> spatial;
+    Kinematics<2>::Matrix<> spatial{}; ///< the first 16
   };
 
   // A sheet in each lane, all of one law.
@@ -87,7 +87,7 @@ namespace
         for (unsigned int a = 0; a < 6; ++a)
           sheet.response.kirchhoff_stress.access_raw_entry(a) =
             responses.kirchhoff_stress.access_raw_entry(a)[i];
-        for (unsigned int k = 0; k < sheet.spatial.size(); ++k)
+        for (unsigned int k = 0; k < 16; ++k)
           sheet.spatial[k] = matrix[k][i];
         sheet.n_evaluations = static_cast<unsigned int>(n_evaluations[i]);
       }

@@ -15,7 +15,7 @@ namespace
   automatic()
   {
     SolverSpec spec;
-    spec.preconditioner = PreconditionerKind::amg;
+    spec.preconditioner = PreconditionerKind::multigrid;
     return spec;
   }
 
@@ -123,15 +123,15 @@ TEST(LinearSolverChoice, SaysWhatItIs)
   WorkCounts counts;
   const auto found = [&]() { return describe_linear_solver(spec, 2, counts); };
   EXPECT_EQ(found(),
-            "direct up to 2000 unknowns, else CG with AMG (automatic)");
+            "direct up to 2000 unknowns, else CG with multigrid (automatic)");
   counts.direct_systems = 3;
   EXPECT_EQ(found(), "direct (automatic)");
   counts.iterative_systems = 1;
-  EXPECT_EQ(found(), "direct and CG with AMG (automatic)");
+  EXPECT_EQ(found(), "direct and CG with multigrid (automatic)");
   counts.direct_systems = 0;
-  EXPECT_EQ(found(), "CG with AMG (automatic)");
+  EXPECT_EQ(found(), "CG with multigrid (automatic)");
   spec.has_symmetric_matrix = false;
-  EXPECT_EQ(found(), "GMRES with AMG (automatic)");
+  EXPECT_EQ(found(), "GMRES with multigrid (automatic)");
   spec.preconditioner = PreconditionerKind::jacobi;
   EXPECT_EQ(found(), "GMRES with Jacobi (automatic)");
   spec.linear_solver  = Kind::cg;
@@ -145,13 +145,13 @@ TEST(LinearSolverChoiceMpi, ComputesAsTheNamedSolver)
   const Overrides small = weight("12"), large = weight("60");
   expect_choice(small, "direct", "direct");
   expect_choice(small + refined, "direct", "direct");
-  expect_choice(large, "CG", "CG with AMG");
+  expect_choice(large, "CG", "CG with multigrid");
   expect_choice(small + Overrides{"Solver/Preconditioner=Jacobi"},
                 "CG",
                 "CG with Jacobi");
   expect_choice(small + Overrides{"Solver/Operator=matrix-free"},
                 "CG",
-                "CG with AMG");
+                "CG with multigrid");
   const Overrides momentum =
     with_inertia + Overrides{"Time/Formulation=momentum"};
   expect_choice(small + momentum, "direct", "direct");

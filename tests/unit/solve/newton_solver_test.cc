@@ -84,7 +84,8 @@ TEST(NewtonSolverMpi, IterativeSolversFindTheSameState)
   auto     reference = direct.vector();
   ASSERT_TRUE(direct.solve(reference).converged);
   for (const std::string solver : {"CG", "GMRES"})
-    for (const std::string preconditioner : {"AMG", "Jacobi", "none"})
+    for (const std::string preconditioner :
+         {"multigrid", "AMG", "Jacobi", "none"})
       for (const std::string how :
            {"matrix", "matrix-free", "difference quotient"})
         {

@@ -39,7 +39,8 @@ namespace impm
 
   enum class PreconditionerKind
   {
-    amg,
+    multigrid, ///< geometric
+    amg,       ///< algebraic
     jacobi,
     none
   };
@@ -65,6 +66,14 @@ namespace impm
     /** An iterative solver that ends early leaves the rest to Newton's method
      * rather than to the direct solver. */
     bool accept_unfinished = false;
+
+    /** Whether the preconditioner is a hierarchy of matrices. */
+    bool
+    has_hierarchy() const
+    {
+      return preconditioner == PreconditionerKind::multigrid ||
+             preconditioner == PreconditionerKind::amg;
+    }
 
     /** Whether the tangent at the points is not asked for. */
     bool

@@ -190,7 +190,7 @@ namespace impm::LogStrain
       const Triple<Number>                  p_1      = {{s * s, c * c, -c * s}};
       const Triple<Number> p_01 = {{-2. * c * s, 2. * c * s, c * c - s * s}};
 
-      tangent = 0.;
+      tangent = SymmetricTensor<4, 3, Number>();
       for (unsigned int j = 0; j < 3; ++j)
         {
           const Number of_0 = axial[0][0] * p_0[j] + axial[0][1] * p_1[j];

@@ -15,14 +15,11 @@
 // program makes of them. Both are thus lower bounds, and what is far from both
 // roofs wastes time, whatever else may be the reason.
 
-#include <deal.II/base/mpi.h>
-
-#include <impm/app/mpi_start.h>
 #include <impm/solve/multigrid.h>
 #include <impm/solve/trilinos_matrix.h>
 
 #include <benchmark/benchmark.h>
-#include <scene_fixture.h>
+#include <block.h>
 
 #include <cmath>
 #include <cstdio>
@@ -117,33 +114,6 @@ namespace
                });
   }
 
-  /** The block of the unit tests, as large as wanted, held at its left, with
-   * room to move elsewhere, and its points anywhere in their cells. */
-  template <int dim>
-  std::unique_ptr<Model<dim>>
-  make_block(const unsigned int n, const Overrides &overrides)
-  {
-    std::string lower = "0", upper = std::to_string(1 + 2. / n),
-                cells = std::to_string(n + 2);
-    for (unsigned int d = 1; d < dim; ++d)
-      {
-        lower += ", " + std::to_string(-2. / n);
-        upper += ", " + std::to_string(1 + 2. / n);
-        cells += ", " + std::to_string(n + 4);
-      }
-    auto model = std::make_unique<Model<dim>>(
-      block_scene(dim == 3 ? "3D" : "plane strain"),
-      Overrides{"Grid/Lower corner=" + lower,
-                "Grid/Upper corner=" + upper,
-                "Grid/Cells=" + cells,
-                "Boundary conditions/left/Type=fixed",
-                // the blocks of a matrix are those of its patches then
-                "Stabilization/Ghost penalty=0"} +
-        overrides);
-    model->scatter_points(1);
-    return model;
-  }
-
   template <int dim>
   class Kernels
   {
@@ -151,9 +121,10 @@ namespace
     Kernels(const std::string &method, const unsigned int n_cells)
       : method("Grid/Method=" + method)
       , h(1. / n_cells)
-      , elastic(make_block<dim>(n_cells, {this->method}))
+      , elastic(make_block<dim>(n_cells, one_matrix + Overrides{this->method}))
       , plastic(
-          make_block<dim>(n_cells, plastic_block + Overrides{this->method}))
+          make_block<dim>(n_cells,
+                          one_matrix + plastic_block + Overrides{this->method}))
       , moving(make_block<dim>(
           n_cells,
           {this->method,
@@ -199,6 +170,10 @@ namespace
     static constexpr double n_nodes = Footprints<dim>::n_nodes;
     static constexpr double n_g     = dim * dim; ///< values of a gradient
     static constexpr double n_t     = n_g * (n_g + 1) / 2; ///< of a tangent
+
+    /** The blocks of a matrix are those of its patches then. */
+    inline static const Overrides one_matrix = {
+      "Stabilization/Ghost penalty=0"};
 
     /** Of one point, so that all yield. */
     inline static const Overrides plastic_block =
@@ -549,28 +524,15 @@ namespace
 int
 main(int argc, char **argv)
 {
-  if (!is_started_by_mpi())
-    prepare_mpi_for_one_process();
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   benchmark::Initialize(&argc, argv);
-  const auto argument = [&](const int i, const std::string &otherwise) {
-    return argc > i ? argv[i] : otherwise;
-  };
-  const std::string dimension = argument(1, "2"), method = argument(2, "MPM");
-  try
-    {
-      // In the plane, fewer would fit into a cache.
-      const double n_points =
-        std::stod(argument(3, dimension == "3" ? "216000" : "1000000"));
-      if (dimension == "3")
-        run<3>(method, n_points);
-      else
-        run<2>(method, n_points);
-    }
-  catch (const std::exception &error)
-    {
-      std::fprintf(stderr, "kernels: %s\n", error.what());
-      return 1;
-    }
-  return 0;
+  return run_program(argc, argv, [](const auto &argument) {
+    const std::string dimension = argument(1, "2"), method = argument(2, "MPM");
+    // In the plane, fewer would fit into a cache.
+    const double n_points =
+      std::stod(argument(3, dimension == "3" ? "216000" : "1000000"));
+    if (dimension == "3")
+      run<3>(method, n_points);
+    else
+      run<2>(method, n_points);
+  });
 }

@@ -6,16 +6,14 @@
 //   multigrid 3 GIMP 216000
 //   multigrid 2 MPM 160000 3   # the left third has cells of an eighth the size
 
-#include <deal.II/base/mpi.h>
 #include <deal.II/base/timer.h>
 
 #include <deal.II/lac/solver_cg.h>
 #include <deal.II/lac/solver_control.h>
 
-#include <impm/app/mpi_start.h>
 #include <impm/solve/multigrid.h>
 
-#include <scene_fixture.h>
+#include <block.h>
 
 #include <algorithm>
 #include <array>
@@ -48,29 +46,16 @@ namespace
       const double       n_points,
       const unsigned int n_refinements)
   {
-    // Cells of the domain: those of the block and two beside it.
+    // two points in each direction of a cell
     const unsigned int n =
       std::round(std::pow(n_points, 1. / dim) / 2 / (1u << n_refinements));
-    const double h     = 1. / n;
-    std::string  lower = "0", upper = std::to_string(1 + 2 * h),
-                cells = std::to_string(n + 2);
-    for (unsigned int d = 1; d < dim; ++d)
-      {
-        lower += ", " + std::to_string(-2 * h);
-        upper += ", " + std::to_string(1 + 2 * h);
-        cells += ", " + std::to_string(n + 4);
-      }
-    Overrides overrides = {"Grid/Method=" + method,
-                           "Grid/Lower corner=" + lower,
-                           "Grid/Upper corner=" + upper,
-                           "Grid/Cells=" + cells,
-                           "Boundary conditions/left/Type=fixed"};
+    Overrides overrides = {"Grid/Method=" + method};
     if (n_refinements > 0)
       overrides = overrides + Overrides{"Grid/Local refinements=" +
                                           std::to_string(n_refinements),
                                         "Grid/Refine where=0.33 - x"};
-    Model<dim> model(block_scene(dim == 3 ? "3D" : "plane strain"), overrides);
-    model.scatter_points(1);
+    const auto  owner = make_block<dim>(n, overrides);
+    Model<dim> &model = *owner;
     model.begin_step();
     model.balance().evaluate(model.vector(), true);
     const Unknowns unknowns = model.balance().make_unknowns();
@@ -118,27 +103,14 @@ namespace
 int
 main(int argc, char **argv)
 {
-  if (!is_started_by_mpi())
-    prepare_mpi_for_one_process();
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-  const auto argument = [&](const int i, const std::string &otherwise) {
-    return argc > i ? argv[i] : otherwise;
-  };
-  const std::string dimension = argument(1, "2"), method = argument(2, "MPM");
-  try
-    {
-      const double n_points =
-        std::stod(argument(3, dimension == "3" ? "216000" : "160000"));
-      const auto n_refinements = std::stoul(argument(4, "0"));
-      if (dimension == "3")
-        run<3>(method, n_points, n_refinements);
-      else
-        run<2>(method, n_points, n_refinements);
-    }
-  catch (const std::exception &error)
-    {
-      std::fprintf(stderr, "multigrid: %s\n", error.what());
-      return 1;
-    }
-  return 0;
+  return run_program(argc, argv, [](const auto &argument) {
+    const std::string dimension = argument(1, "2"), method = argument(2, "MPM");
+    const double      n_points =
+      std::stod(argument(3, dimension == "3" ? "216000" : "160000"));
+    const auto n_refinements = std::stoul(argument(4, "0"));
+    if (dimension == "3")
+      run<3>(method, n_points, n_refinements);
+    else
+      run<2>(method, n_points, n_refinements);
+  });
 }

@@ -1,6 +1,7 @@
 #include <deal.II/lac/solver_cg.h>
 #include <deal.II/lac/solver_control.h>
 
+#include <impm/base/exceptions.h>
 #include <impm/solve/coarse_unknowns.h>
 #include <impm/solve/multigrid.h>
 
@@ -140,6 +141,34 @@ TEST(MultigridMpi, TakesAsManyIterationsOnAnyNumberOfRanks)
   EXPECT_NEAR(System<3>("3D", cells(3)).iterations(),
               System<3>("3D", cells(3), MPI_COMM_SELF).iterations(),
               1);
+}
+
+
+// Places beyond what a key can tell are refused, not mixed up.
+TEST(MultigridMpi, RefusesTooFineALattice)
+{
+  System<2> system("plane strain", cells(2));
+  auto      lattice = system.model.balance().lattice(*system.unknowns);
+  for (auto &place : lattice.places)
+    place[1] += 1 << 19;
+  EXPECT_THROW(make_multigrid(*system.matrix, lattice), ComputationError);
+}
+
+
+// A node that is free alone, between those of the coarse lattice: the four
+// places around it stand for no more than this one.
+TEST(MultigridMpi, SurvivesANodeThatStandsAlone)
+{
+  System<2> system("plane strain", cells(2));
+  auto      lattice = system.model.balance().lattice(*system.unknowns);
+  for (auto &place : lattice.places)
+    if (place[0] == 10 && place[1] == 10)
+      place = {{1001, 1001, 0}};
+  const auto   b         = system.rough(1);
+  impm::Vector x         = b;
+  const auto   multigrid = make_multigrid(*system.matrix, lattice);
+  multigrid.vmult(x, b);
+  EXPECT_GT(x * b, 0.);
 }
 
 

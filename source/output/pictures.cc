@@ -113,7 +113,7 @@ namespace impm
     PointPatches writer;
     auto        &names = writer.names;
     writer.flags.time  = time;
-    // the best compression hardly saves anything and takes six times as long
+    // the best compression hardly saves anything and takes far longer
     using Level                    = decltype(writer.flags.compression_level);
     writer.flags.compression_level = Level::best_speed;
     for (const auto &field : fields)

@@ -26,7 +26,11 @@ namespace impm
   {
     Vector result;
     initialize(result);
-    add_forces_of_strain(strain_increment(u), result);
+    const Vector &strain_u = strain_increment(u);
+    for (const Term *term : parts.strain_terms)
+      term->add_end_force(strain_u, result);
+    result.compress(VectorOperation::add);
+    parts.discretization.condense_hanging(result);
     return result;
   }
 

@@ -32,9 +32,11 @@ namespace impm
   template <int dim>
   PointResponse<dim>::PointResponse(const MaterialPoints<dim> &points,
                                     const double               dt,
-                                    unsigned long             &n_evaluations)
+                                    const bool     acts_in_the_middle,
+                                    unsigned long &n_evaluations)
     : kinematics(points.layout.geometry == GeometryKind::axisymmetric)
     , average(points, kinematics)
+    , acts_in_the_middle(acts_in_the_middle)
     , gradients(points.size() * kinematics.size)
     , stresses(points.size() * kinematics.size)
     , points(points)
@@ -50,9 +52,10 @@ namespace impm
     , thickening(is_plane_stress ? points.size() : 0, 1.)
   {
     const unsigned int n = kinematics.size;
-    const bool symmetric = points.all_materials([](const Material &material) {
-      return material.has_symmetric_tangent();
-    });
+    const bool         symmetric =
+      !acts_in_the_middle && points.all_materials([](const Material &material) {
+        return material.has_symmetric_tangent();
+      });
     place_of_entry.resize(n * n);
     for (unsigned int a = 0; a < n; ++a)
       for (unsigned int b = 0; b < n; ++b)
@@ -204,7 +207,92 @@ namespace impm
             return tangent[entries[k]];
           });
       });
+    if (acts_in_the_middle && !start_stresses.empty())
+      act_in_the_middle(with_tangent);
     return true;
+  }
+
+  template <int dim>
+  void
+  PointResponse<dim>::act_in_the_middle(const bool with_tangent)
+  {
+    const unsigned int n = kinematics.size;
+    turns.resize(stresses.size());
+    acting_stresses.resize(stresses.size());
+    // Tensors as lists; a symmetric one acts from the right.
+    const auto tensor = [&](const double *list) {
+      Tensor<2, 3> result;
+      for (unsigned int i = 0; i < dim; ++i)
+        for (unsigned int j = 0; j < dim; ++j)
+          result[i][j] = list[dim * i + j];
+      if (kinematics.axisymmetric)
+        result[2][2] = list[dim * dim];
+      return result;
+    };
+    const auto store = [&](const Tensor<2, 3> &value, double *list) {
+      for (unsigned int i = 0; i < dim; ++i)
+        for (unsigned int j = 0; j < dim; ++j)
+          list[dim * i + j] = value[i][j];
+      if (kinematics.axisymmetric)
+        list[dim * dim] = value[2][2];
+    };
+    const Tensor<2, 3> unit = unit_symmetric_tensor<3>();
+    typename Kinematics<dim>::template Matrix<> A, turned;
+    for (unsigned int p = 0; p < points.size(); ++p)
+      {
+        const auto dF      = kinematics.deformation(&gradients[p * n]);
+        const auto inverse = invert(dF);
+        const auto middle  = 0.5 * (unit + dF);
+        const auto T       = middle * inverse;
+        const auto start   = tensor(&start_stresses[p * n]);
+        const auto end     = tensor(&stresses[p * n]);
+        store(T, &turns[p * n]);
+        store((middle - unit) * start + T * end, &acting_stresses[p * n]);
+        if (!with_tangent)
+          continue;
+        double *list = &tangents[p * n * n]; // of all entries, in their order
+        std::copy_n(list, n * n, A.begin());
+        const auto S    = inverse * end;
+        const auto mean = 0.5 * (start + S);
+        turned.fill(0.);
+        for (unsigned int i = 0; i < dim; ++i)
+          for (unsigned int j = 0; j < dim; ++j)
+            {
+              double *row = &turned[(dim * i + j) * n];
+              for (unsigned int m = 0; m < dim; ++m)
+                for (unsigned int b = 0; b < n; ++b)
+                  row[b] += T[i][m] * A[(dim * m + j) * n + b];
+              for (unsigned int l = 0; l < dim; ++l)
+                {
+                  row[dim * i + l] += mean[l][j];
+                  for (unsigned int k = 0; k < dim; ++k)
+                    row[dim * k + l] -= T[i][k] * S[l][j];
+                }
+            }
+        if (kinematics.axisymmetric)
+          {
+            const unsigned int h = dim * dim;
+            for (unsigned int b = 0; b < n; ++b)
+              turned[h * n + b] = T[2][2] * A[h * n + b];
+            turned[h * n + h] += mean[2][2] - T[2][2] * S[2][2];
+          }
+        std::copy_n(turned.begin(), n * n, list);
+      }
+  }
+
+  template <int dim>
+  typename Kinematics<dim>::template List<>
+  PointResponse<dim>::turn(const unsigned int point, const double *list) const
+  {
+    typename Kinematics<dim>::template List<> result{};
+    const double *T = &turns[point * kinematics.size];
+    for (unsigned int i = 0; i < dim; ++i)
+      for (unsigned int j = 0; j < dim; ++j)
+        for (unsigned int m = 0; m < dim; ++m)
+          result[dim * i + j] += T[dim * i + m] * list[dim * m + j];
+    if (kinematics.axisymmetric)
+      result[dim * dim] = T[dim * dim] * list[dim * dim];
+    return result;
   }
 
   template <int dim>
@@ -217,6 +305,7 @@ namespace impm
         const bool   fine   = evaluate(false);
         dt                  = length;
         start_stresses      = stresses;
+        start_potential     = potential;
         return fine;
       }
     const Tensor<2, 3> unit = unit_symmetric_tensor<3>();
@@ -234,9 +323,10 @@ namespace impm
   double
   PointResponse<dim>::work() const
   {
-    double sum = 0;
+    const auto &end = acting();
+    double      sum = 0;
     for (unsigned int i = 0; i < gradients.size(); ++i)
-      sum += 0.5 * (start_stresses[i] + stresses[i]) * gradients[i];
+      sum += 0.5 * (start_stresses[i] + end[i]) * gradients[i];
     return sum;
   }
 
@@ -258,7 +348,19 @@ namespace impm
             s[a] = sum;
           }
       }
-    average.apply_coupling(gradient_changes, stress_changes);
+    if (!acts_in_the_middle || average.groups.empty())
+      {
+        average.apply_coupling(gradient_changes, stress_changes);
+        return;
+      }
+    coupled.assign(stress_changes.size(), 0.);
+    average.apply_coupling(gradient_changes, coupled);
+    for (unsigned int p = 0; p < points.size(); ++p)
+      {
+        const auto turned = turn(p, &coupled[p * n_g]);
+        for (unsigned int a = 0; a < n_g; ++a)
+          stress_changes[p * n_g + a] += turned[a];
+      }
   }
 
   namespace

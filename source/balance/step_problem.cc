@@ -86,7 +86,10 @@ namespace impm
                   time,
                   dt,
                   norm ? norm->unit_strain_forces : gathered.mass)
-    , response(points, dt, counts.stress_evaluations)
+    , response(points,
+               dt,
+               integrator.has_stress_in_the_middle(),
+               counts.stress_evaluations)
     , motion(stop_held(std::move(gathered), constraints))
     , n_limited_boxes(
         Utilities::MPI::sum(footprints.n_limited_boxes, grid.communicator))
@@ -146,7 +149,8 @@ namespace impm
                            [](const auto &body) {
                              return body.rigid ||
                                     body.material->has_potential();
-                           }),
+                           }) &&
+                 !integrator.has_stress_in_the_middle(),
                scene.geometry != GeometryKind::axisymmetric},
               counts)
   {
@@ -183,8 +187,10 @@ namespace impm
   StepProblem<dim>::find_start_acceleration() const
   {
     Vector acceleration = motion.acceleration;
-    if (start_forces.size() > 0)
-      discretization->initialize(acceleration);
+    if (start_forces.size() == 0 ||
+        (integrator.keeps_acceleration() && time > 0))
+      return acceleration;
+    discretization->initialize(acceleration);
     for (unsigned int i = 0; i < start_forces.locally_owned_size(); ++i)
       acceleration.local_element(i) =
         motion.mass.local_element(i) > 0 && !constraints.is_constrained[i] ?

@@ -42,6 +42,7 @@ namespace impm
              const PointsPerCell &density,
              const Totals<dim>   &totals,
              const double         start_kinetic_energy,
+             const double         energy_gain,
              const Figures       &figures)
     {
       Figures row = {{"step", report.step},
@@ -92,8 +93,16 @@ namespace impm
                      report.resampling_internal_energy},
                   {"smallest_points_per_cell", density.smallest},
                   {"mean_points_per_cell", density.mean},
-                  {"imbalance", report.imbalance}});
+                  {"imbalance", report.imbalance},
+                  {"energy_gain", energy_gain}});
       return row;
+    }
+
+    template <int dim>
+    double
+    all_energy(const Totals<dim> &totals)
+    {
+      return totals.kinetic_energy + totals.strain_energy + totals.plastic_work;
     }
   } // namespace
 
@@ -155,7 +164,7 @@ namespace impm
       figures.emplace_back(reaction.name, 0);
     std::vector<std::string> names;
     for (const auto &column :
-         make_row<dim>(scene.geometry, {}, 0, {}, {}, 0, figures))
+         make_row<dim>(scene.geometry, {}, 0, {}, {}, 0, 0, figures))
       names.push_back(column.first);
     return names;
   }
@@ -178,8 +187,10 @@ namespace impm
                                         return body.rigid ||
                                                body.material->has_potential();
                                       }))
-    , start_kinetic_energy(total(points).kinetic_energy)
   {
+    const auto at_start  = total(points);
+    start_kinetic_energy = at_start.kinetic_energy;
+    budget.begin(all_energy(at_start));
     for (const auto &probe : scene.output.probes)
       probes.push_back(make_probe(
         probe, scene, points, rigid, grid, &followed[probes.size()]));
@@ -266,6 +277,9 @@ namespace impm
       potential_is_energy && report.splits == 0 && report.merges == 0;
     const auto totals =
       total(points, is_known ? std::optional(potential) : std::nullopt);
+    budget.update(all_energy(totals),
+                  report.external_work + report.resampling_kinetic_energy +
+                    report.resampling_internal_energy);
     const auto n_points = points.sorted.n_global();
     density             = points_per_cell(grid, points);
     figures.clear();
@@ -285,6 +299,7 @@ namespace impm
                               density,
                               totals,
                               start_kinetic_energy,
+                              budget.gain,
                               figures);
     std::ostringstream line;
     line << std::setprecision(12);

@@ -155,6 +155,7 @@ namespace impm
                 "or begin with more";
         warn("few points", text.str());
       }
+    watch_energy();
     if (reference.follows_steps())
       {
         TimerOutput::Scope scope(timer, "references");

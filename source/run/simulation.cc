@@ -214,9 +214,13 @@ namespace impm
                           is_off_grid() ?
                             scene.grid.reset_motion :
                             std::max(1., scene.grid.reset_motion));
-    if (motion.forbidden.empty())
-      off_grid.in_cells = motion.in_cells;
-    return motion.forbidden;
+    if (!motion.forbidden.empty())
+      return motion.forbidden;
+    off_grid.in_cells = motion.in_cells;
+    result            = problem->end_motion(result.increment);
+    end_forces        = problem->end_forces(result.increment);
+    step_work         = work.of_step(*problem, result.increment, end_forces);
+    return check_energy();
   }
 
   template <int dim>
@@ -276,13 +280,13 @@ namespace impm
     report.active_cells =
       Utilities::MPI::sum<unsigned int>(problem->populated.cells.size(),
                                         communicator);
-    report.dofs         = problem->n_active_dofs;
-    const Vector forces = problem->end_forces(result.increment);
-    work.add(*problem, result.increment, forces);
+    report.dofs = problem->n_active_dofs;
+    work.add(step_work);
+    history.energy().add_step(step_gain);
     report.external_work      = work.external;
     report.internal_work      = work.internal;
     report.stabilization_work = work.stabilization;
-    history.take_figures(*problem, forces);
+    history.take_figures(*problem, end_forces);
     watch_faces();
     commit();
     control.accept();
@@ -298,7 +302,6 @@ namespace impm
     TimerOutput::Scope scope(timer, "move points and grid");
     const double       end = time + report.dt;
     is_between_steps       = false;
-    result                 = problem->end_motion(result.increment);
     advance_points(*problem, result, increments, scene.time, points);
     policy->advance(grid, result, time, end);
     rigid.move(time, end);

@@ -5,15 +5,17 @@ namespace impm
   using namespace dealii;
 
   template <int dim>
-  void
-  WorkDone<dim>::add(const StepProblem<dim> &problem,
-                     const Vector           &u,
-                     const Vector           &forces)
+  typename WorkDone<dim>::Step
+  WorkDone<dim>::of_step(const StepProblem<dim> &problem,
+                         const Vector           &u,
+                         const Vector           &forces) const
   {
     const auto        &constraints = problem.constraints;
     const MPI_Comm     comm        = problem.discretization->communicator;
     const unsigned int n           = constraints.n_carriers();
-    last_forces.resize(n);
+    Step               step;
+    step.last_forces = last_forces;
+    step.last_forces.resize(n);
 
     // Of every carrier: force, sum of displacements, number of values.
     std::vector<double> sums(3 * dim * n);
@@ -37,18 +39,30 @@ namespace impm
         sum[2] += 1;
       }
     Utilities::MPI::sum(sums, comm, sums);
-    external += Utilities::MPI::sum(work, comm);
+    step.external = Utilities::MPI::sum(work, comm);
     for (unsigned int b = 0; b < n; ++b)
       for (unsigned int d = 0; d < dim; ++d)
         {
-          const double *sum = &sums[3 * (dim * b + d)];
+          const double *sum  = &sums[3 * (dim * b + d)];
+          double       &last = step.last_forces[b][d];
           if (sum[2] > 0)
-            external += 0.5 * (last_forces[b][d] - sum[0]) * sum[1] / sum[2];
-          last_forces[b][d] = sum[0];
+            step.external += 0.5 * (last - sum[0]) * sum[1] / sum[2];
+          last = sum[0];
         }
-    internal += Utilities::MPI::sum(problem.response.work(), comm);
+    step.internal = Utilities::MPI::sum(problem.response.work(), comm);
     for (const Term *term : problem.stabilization())
-      stabilization += Utilities::MPI::sum(term->energy(u, u), comm);
+      step.stabilization += Utilities::MPI::sum(term->energy(u, u), comm);
+    return step;
+  }
+
+  template <int dim>
+  void
+  WorkDone<dim>::add(const Step &step)
+  {
+    external += step.external;
+    internal += step.internal;
+    stabilization += step.stabilization;
+    last_forces = step.last_forces;
   }
 
   template class WorkDone<2>;

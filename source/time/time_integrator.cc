@@ -113,16 +113,99 @@ namespace impm
         end_velocity.add(dt * gamma, end_acceleration);
       }
 
-    private:
+    protected:
       const double beta, gamma;
+    };
+
+    /**
+     * The energy-momentum method (Simo & Tarnow 1992): with the trapezoidal
+     * rule's motion, v_end = 2 u / dt - v, but the balance
+     *
+     *   m (v_end - v) / dt + f = 0,   f_I = sum_p V0 F S grad N_I
+     *
+     * with F in the middle of the step and S the mean of the second
+     * Piola-Kirchhoff stresses at its ends. It keeps momenta; what f does along
+     * u is S : (C_end - C) / 2, the change of an energy that is quadratic in C,
+     * and of another one to third order in C_end - C, forward as backward.
+     */
+    class EnergyMomentum : public Newmark
+    {
+    public:
+      explicit EnergyMomentum(const TimeSpec &spec)
+        : Newmark(spec)
+      {
+        stress_in_the_middle = true;
+      }
+    };
+
+    /**
+     * The generalised-alpha method (Chung & Hulbert 1993), which damps what
+     * steps do not resolve to a spectral radius rho a step and little else:
+     *
+     *   m ((1 - alpha_m) a_end + alpha_m a)
+     *     + (1 - alpha_f) f(u) + alpha_f f(0) = 0
+     *
+     * with Newmark's u and v_end, and alpha_m, alpha_f, beta and gamma that
+     * depend on rho alone. The acceleration a at the start is what the points
+     * carry, or -f(0) / m, which damps less.
+     */
+    class GeneralisedAlpha : public Newmark
+    {
+    public:
+      explicit GeneralisedAlpha(const TimeSpec &spec)
+        : GeneralisedAlpha(spec,
+                           (2 * spec.spectral_radius - 1) /
+                             (spec.spectral_radius + 1),
+                           spec.spectral_radius / (spec.spectral_radius + 1))
+      {}
+
+      void
+      known_acceleration(const double  dt,
+                         const Vector &velocity,
+                         const Vector &acceleration,
+                         Vector       &known) const override
+      {
+        known.equ((1 - alpha_m) / (beta * dt), velocity);
+        known.add((1 - alpha_m) * (1 / (2 * beta) - 1) - alpha_m, acceleration);
+      }
+
+    private:
+      GeneralisedAlpha(const TimeSpec &spec,
+                       const double    alpha_m,
+                       const double    alpha_f)
+        : Newmark(with_weights(spec, alpha_f - alpha_m))
+        , alpha_m(alpha_m)
+      {
+        start_forces = true;
+        mass         = (1 - alpha_m) / beta;
+        force        = 1 - alpha_f;
+      }
+
+      static TimeSpec
+      with_weights(TimeSpec spec, const double difference)
+      {
+        spec.beta  = 0.25 * (1 + difference) * (1 + difference);
+        spec.gamma = 0.5 + difference;
+        return spec;
+      }
+
+      const double alpha_m;
     };
   } // namespace
 
   std::unique_ptr<TimeIntegrator>
   make_time_integrator(const TimeSpec &spec)
   {
-    if (spec.integrator == Integrator::newmark)
-      return std::make_unique<Newmark>(spec);
-    return std::make_unique<Theta>(spec);
+    switch (spec.integrator)
+      {
+        case Integrator::newmark:
+          return std::make_unique<Newmark>(spec);
+        case Integrator::generalised_alpha:
+          return std::make_unique<GeneralisedAlpha>(spec);
+        case Integrator::energy_momentum:
+          return std::make_unique<EnergyMomentum>(spec);
+        default:
+          return std::make_unique<Theta>(spec);
+      }
   }
 } // namespace impm

@@ -16,6 +16,13 @@ namespace impm
    * What the points answer to the gradients of an increment: P = tau dF^-T
    * times V0, its tangent A = dP/d(dF), and the trial history. Lists of one
    * point are those of Kinematics, in units of N m.
+   *
+   * In the middle of the step (see EnergyMomentum), what acts instead is
+   * P' with (P' + P_0) / 2 = F S, F = (1 + dF) / 2 and S the mean of the
+   * stresses P_0 at the start and dF^-1 P at the end, which are symmetric:
+   *
+   *   P' = F P_0 + T P - P_0,  T = F dF^-1,
+   *   A' g = g (P_0 + dF^-1 P) / 2 - T g dF^-1 P + T A g.
    */
   template <int dim>
   class PointResponse
@@ -27,6 +34,7 @@ namespace impm
      */
     PointResponse(const MaterialPoints<dim> &points,
                   double                     dt,
+                  bool                       acts_in_the_middle,
                   unsigned long             &n_evaluations);
 
     /** Evaluates the laws at `gradients`. Returns false when a point has no
@@ -93,6 +101,10 @@ namespace impm
       return &end_stresses[point * n_stress];
     }
 
+    /** T of a point times a list of one, where stress acts in the middle. */
+    typename Kinematics<dim>::template List<>
+    turn(unsigned int point, const double *list) const;
+
     /** Squares of the points' stresses (N m)^2, by the groups of a norm. */
     std::vector<double>
     squares_of_stresses(const ResidualNorm &norm) const;
@@ -107,19 +119,30 @@ namespace impm
                       tangents,
                       histories,
                       end_stresses,
-                      thickening) +
+                      thickening,
+                      turns,
+                      acting_stresses) +
              average.memory_consumption();
     }
 
     const Kinematics<dim> kinematics;
     VolumeAverage<dim>    average;
+    const bool            acts_in_the_middle;
 
     /** Of the stresses over the step, by the trapezoidal rule (J). */
     double
     work() const;
 
+    /** P, or what acts instead, which the tangent belongs to. */
+    const std::vector<double> &
+    acting() const
+    {
+      return acts_in_the_middle ? acting_stresses : stresses;
+    }
+
     std::vector<double> gradients, stresses, start_stresses;
     double              potential = 0; ///< sum of V0 times those of the laws
+    double              start_potential = 0; ///< likewise, if not explicit
 
   private:
     /** Points of one law, on their way through evaluate(). */
@@ -145,17 +168,23 @@ namespace impm
     void
     carry_back(Batch &batch, bool with_tangent);
 
+    /** Finds what acts in the middle of the step. */
+    void
+    act_in_the_middle(bool with_tangent);
+
     const MaterialPoints<dim> &points;
     const bool                 is_plane_stress;
     double                     dt;
     unsigned long             &n_evaluations;
     /** Of a tangent: those that are stored, all or, where every law has a
      * symmetric one, its lower triangle, as row * size + column; and where. */
-    std::vector<unsigned int> entries, place_of_entry;
-    std::vector<double>       tangents, histories;
-    const unsigned int        n_stress; ///< values of a stress, if carried
-    std::vector<double>       end_stresses;
-    std::vector<double>       thickening; ///< dF_33 in plane stress
+    std::vector<unsigned int>   entries, place_of_entry;
+    std::vector<double>         tangents, histories;
+    const unsigned int          n_stress; ///< values of a stress, if carried
+    std::vector<double>         end_stresses;
+    std::vector<double>         thickening; ///< dF_33 in plane stress
+    std::vector<double>         turns, acting_stresses; ///< T and P'
+    mutable std::vector<double> coupled;                ///< of apply_tangent
   };
 } // namespace impm
 

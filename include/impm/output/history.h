@@ -3,6 +3,7 @@
 
 #include <impm/balance/step_problem.h>
 #include <impm/base/files.h>
+#include <impm/output/energy_budget.h>
 #include <impm/points/adapt_points.h>
 #include <impm/points/point_fields.h>
 #include <impm/scene/scene.h>
@@ -114,11 +115,24 @@ namespace impm
     CsvTable
     table() const;
 
+    /** At the last row. */
+    const EnergyBudget &
+    energy() const
+    {
+      return budget;
+    }
+
+    EnergyBudget &
+    energy()
+    {
+      return budget;
+    }
+
     template <class Archive>
     void
     serialize(Archive &archive, const unsigned int /*version*/)
     {
-      archive &followed &start_kinetic_energy &figures &density &size;
+      archive &followed &start_kinetic_energy &budget &figures &density &size;
     }
 
     /** Of the last row. */
@@ -147,6 +161,7 @@ namespace impm
     const bool    potential_is_energy;
     double        potential = 0; ///< in the last step, of this rank (J)
     double        start_kinetic_energy;
+    EnergyBudget  budget;
     Figures       figures;
     std::string   file_name;
     std::ofstream file;

@@ -65,6 +65,24 @@ namespace impm
     std::string
     attempt(double dt);
 
+    /**
+     * What a step that is solved gains of energy by itself, as the grid sees it
+     * (J); 0 if it is not known: with laws without a potential, in explicit
+     * and in quasi-static steps. Collective.
+     */
+    double
+    energy_gain_of_step() const;
+
+    /** Why the step must not be used for its energy; empty if it may.
+     * Collective. */
+    std::string
+    check_energy();
+
+    /** Warns of energy that the run has gained by itself; throws
+     * ComputationError when that is more than it ever had. */
+    void
+    watch_energy();
+
     /** Lets the policy change the cells, and ranks share the work anew. */
     void
     adapt();
@@ -192,8 +210,11 @@ namespace impm
       }
     } off_grid;
 
-    WorkDone<dim> work;
-    PointChanges  resampled; ///< since the start
+    WorkDone<dim>                work;
+    typename WorkDone<dim>::Step step_work; ///< of the step that is solved
+    Vector       end_forces;    ///< of the step that is solved, see StepProblem
+    double       step_gain = 0; ///< likewise, see energy_gain_of_step()
+    PointChanges resampled;     ///< since the start
 
     Pictures<dim>             pictures;
     History<dim>              history;

@@ -22,11 +22,22 @@ namespace impm
   class WorkDone
   {
   public:
-    /** Adds a step that has converged at `u`, with its end_forces().
-     * Collective.
-     */
+    /** The work (J) of a step, and the forces at its end by carrier (N). */
+    struct Step
+    {
+      double external = 0, internal = 0, stabilization = 0;
+      std::vector<dealii::Tensor<1, dim>> last_forces;
+    };
+
+    /** Of one that has converged at `u`, with its end_forces(). Collective. */
+    Step
+    of_step(const StepProblem<dim> &problem,
+            const Vector           &u,
+            const Vector           &forces) const;
+
+    /** Goes on by one. */
     void
-    add(const StepProblem<dim> &problem, const Vector &u, const Vector &forces);
+    add(const Step &step);
 
     template <class Archive>
     void

@@ -51,6 +51,16 @@ namespace impm
     }
 
     /**
+     * Whether the mean of the stresses at both ends acts in the middle of the
+     * step, instead of each where it is.
+     */
+    bool
+    has_stress_in_the_middle() const
+    {
+      return stress_in_the_middle;
+    }
+
+    /**
      * The longest step (s) in which an undamped oscillation of a circular
      * frequency (1/s) does not grow; infinite if it never does.
      */
@@ -98,6 +108,7 @@ namespace impm
     double stable_angle =
       std::numeric_limits<double>::infinity(); ///< in a step
     bool start_forces = false, acceleration_kept = false;
+    bool stress_in_the_middle = false;
   };
 
   /** The integrator that a scene names: every one stands in here. */

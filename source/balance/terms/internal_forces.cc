@@ -176,34 +176,42 @@ namespace impm
     // F-bar: nodal forces of the mean dilation and of what it does.
     const unsigned int     n        = matrix.m();
     const unsigned int     n_filled = filled_up(n / dim);
-    dealii::Vector<double> dilation(n), answer(n);
+    dealii::Vector<double> dilation(n), answer(n), dilating(n), answering(n);
+    const auto add = [&](const double *list, dealii::Vector<double> &forces) {
+      for (unsigned int l = 0; l < n / dim; ++l)
+        {
+          for (unsigned int c = 0; c < dim; ++c)
+            for (unsigned int d = 0; d < dim; ++d)
+              forces[dim * l + c] +=
+                list[dim * c + d] * slopes[n_filled * d + l];
+          if (axisymmetric)
+            forces[dim * l] += list[dim * dim] * hoops[l];
+        }
+    };
     for (unsigned int i = patch.begin_points; i < patch.end_points; ++i)
       {
         const unsigned int p = prints.patch_points[i];
         const double      *m = &average.mean[p * n_gradients];
         const double      *b = &average.coupling[p * n_gradients];
         place_on_patch(p, n_filled);
-        for (unsigned int l = 0; l < n / dim; ++l)
+        add(m, dilation);
+        add(b, answer);
+        if (response.acts_in_the_middle)
           {
-            for (unsigned int c = 0; c < dim; ++c)
-              for (unsigned int d = 0; d < dim; ++d)
-                {
-                  const double slope = slopes[n_filled * d + l];
-                  dilation[dim * l + c] += m[dim * c + d] * slope;
-                  answer[dim * l + c] += b[dim * c + d] * slope;
-                }
-            if (axisymmetric)
-              {
-                dilation[dim * l] += m[dim * dim] * hoops[l];
-                answer[dim * l] += b[dim * dim] * hoops[l];
-              }
+            add(response.turn(p, m).data(), dilating);
+            add(response.turn(p, b).data(), answering);
           }
+      }
+    if (!response.acts_in_the_middle)
+      {
+        dilating  = dilation;
+        answering = answer;
       }
     const double square = average.group_square[average.groups[first]];
     for (unsigned int i = 0; i < n; ++i)
       for (unsigned int j = 0; j < n; ++j)
-        matrix(i, j) += answer[i] * dilation[j] + dilation[i] * answer[j] +
-                        square * dilation[i] * dilation[j];
+        matrix(i, j) += answering[i] * dilation[j] + dilating[i] * answer[j] +
+                        square * dilating[i] * dilation[j];
   }
 
   template <int dim>

@@ -165,6 +165,8 @@ namespace impm
           what = "the law of body '" + body.name + "'";
       if (time.momentum_formulation)
         what = "the momentum formulation";
+      if (time.integrator == Integrator::energy_momentum)
+        what = "the energy-momentum method";
       solver.has_symmetric_matrix = what.empty();
       if (what.empty())
         return;
@@ -174,11 +176,6 @@ namespace impm
         section.refuse("Linear solver", flaw + "are GMRES, direct");
       if (solver.bfgs_updates == 0)
         return;
-      if (time.momentum_formulation)
-        section.refuse("Nonlinear solver",
-                       "which keeps a symmetric matrix, allowed with the "
-                       "momentum formulation, whose tangent is unsymmetric, "
-                       "is 'Newton'");
       section.refuse("Nonlinear solver", flaw + "is Newton");
     }
   } // namespace

@@ -9,7 +9,9 @@ namespace impm
                   {{"quasi-static", Integrator::quasi_static},
                    {"explicit", Integrator::explicit_euler},
                    {"theta", Integrator::theta},
-                   {"Newmark", Integrator::newmark}});
+                   {"Newmark", Integrator::newmark},
+                   {"generalised alpha", Integrator::generalised_alpha},
+                   {"energy-momentum", Integrator::energy_momentum}});
 
     void
     add_integrator(const Section &section,
@@ -20,7 +22,10 @@ namespace impm
                   time.integrator,
                   "Quasi-static: no inertia. Explicit and theta: Sulsky & Kaul "
                   "(2004), section 2.3.1 and eq. 2.4.1. Newmark: Guilkey & "
-                  "Weiss (2003).");
+                  "Weiss (2003). Generalised alpha: Chung & Hulbert (1993), "
+                  "damps what steps do not resolve. Energy-momentum: Simo & "
+                  "Tarnow (1992), for bodies that turn; its matrix is "
+                  "unsymmetric.");
       if (section.may_be(integrators, Integrator::newmark))
         {
           section.add("Beta",
@@ -32,13 +37,21 @@ namespace impm
                       time.gamma,
                       {"0.5", 0.5, 1},
                       "The same in the velocity; above 0.5 it damps.");
-          section.add("Acceleration from",
-                      time.keeps_acceleration,
-                      {{"grid", false}, {"points", true}},
-                      "At the start of a step: from the forces on the grid as "
-                      "it is, or as the points carry it (Guilkey & Weiss "
-                      "2003), which loses energy in long steps.");
         }
+      if (section.may_be(integrators, Integrator::generalised_alpha))
+        section.add("Spectral radius",
+                    time.spectral_radius,
+                    {"0.8", 0, 1},
+                    "What a step leaves of what it does not resolve; 1: all "
+                    "of it.");
+      if (section.may_be(integrators, Integrator::newmark) ||
+          section.may_be(integrators, Integrator::generalised_alpha))
+        section.add("Acceleration from",
+                    time.keeps_acceleration,
+                    {{"grid", false}, {"points", true}},
+                    "At the start of a step: from the forces on the grid as "
+                    "it is, or as the points carry it (Guilkey & Weiss "
+                    "2003), which loses energy in long steps.");
       if (section.may_be(integrators, Integrator::theta))
         section.add("Theta",
                     time.theta,
@@ -67,6 +80,12 @@ namespace impm
                   "Velocities of points: they take the change of the grid's "
                   "(FLIP), its value (PIC, which damps), or its value and "
                   "gradient (APIC).");
+      if (time.momentum_formulation &&
+          time.integrator == Integrator::energy_momentum)
+        section.refuse("Formulation",
+                       "allowed with the energy-momentum method, whose forces "
+                       "do their work along the velocity of the grid, is "
+                       "'velocity'");
       if (time.momentum_formulation && time.transfer != TransferKind::flip)
         section.refuse("Transfer",
                        "allowed in the momentum formulation, which maps "
@@ -118,6 +137,14 @@ namespace impm
                   {"0.001", above_zero, 1},
                   "How small a step may be cut before the run gives up, as a "
                   "fraction of the first step.");
+      if (!is_quasi_static(section.chosen))
+        section.add("Energy tolerance",
+                    time.energy_tolerance,
+                    {"0.01", 0},
+                    "What a run may gain by itself, over the largest energy "
+                    "that it had: beyond, it warns, and cuts steps that gain "
+                    "more than a tenth of it unless they are explicit. 0: no "
+                    "limit.");
       section.add("Largest number of steps",
                   time.largest_number_of_steps,
                   {"10000000", 1},

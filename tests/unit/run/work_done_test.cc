@@ -38,7 +38,7 @@ namespace
         const auto solution = model.solve(u);
         EXPECT_TRUE(solution.converged) << solution.failure;
         const auto forces = model.problem->end_forces(u);
-        result.work.add(*model.problem, u, forces);
+        result.work.add(result.work.of_step(*model.problem, u, forces));
         result.loads.push_back(
           -model.constraints().sum_over("top", forces, {0., 1.}));
         const auto end = model.problem->end_motion(u);
@@ -135,7 +135,7 @@ TEST(WorkDoneMpi, LoadsDoWork)
   for (unsigned int step = 0; step < 8; ++step)
     {
       ASSERT_TRUE(model.solve(u).converged);
-      work.add(*model.problem, u, model.problem->end_forces(u));
+      work.add(work.of_step(*model.problem, u, model.problem->end_forces(u)));
       model.commit(u);
     }
   const double energy = total(model.points).strain_energy;

@@ -41,6 +41,12 @@ namespace impm
     void
     add_force(const Vector &, Vector &force) const override
     {
+      add_forces_of(response.acting(), force);
+    }
+
+    void
+    add_end_force(const Vector &, Vector &force) const override
+    {
       add_forces_of(response.stresses, force);
     }
 

@@ -38,6 +38,13 @@ namespace impm
     virtual void
     add_force(const Vector &u, Vector &force) const = 0;
 
+    /** The same where what acts over the step is not what acts at its end. */
+    virtual void
+    add_end_force(const Vector &u, Vector &force) const
+    {
+      add_force(u, force);
+    }
+
     /** force += f at the start of the step (N). */
     virtual void
     add_start_force(Vector & /*force*/) const

@@ -13,7 +13,9 @@ namespace impm
     quasi_static, ///< no inertia, and thus no velocity
     explicit_euler,
     theta,
-    newmark
+    newmark,
+    generalised_alpha,
+    energy_momentum
   };
 
   /** How velocities come from the grid to the points. */
@@ -29,12 +31,14 @@ namespace impm
     Integrator integrator;
     double     theta = 1;
     double     beta = 0.25, gamma = 0.5;   ///< of Newmark's method
+    double     spectral_radius    = 1;     ///< of the generalised-alpha method
     bool       keeps_acceleration = false; ///< at the points
     /** Strain from a velocity that has been through the points. */
     bool         momentum_formulation = false;
     double       cfl_number           = 0; ///< 0: `step` is given
     TransferKind transfer             = TransferKind::flip;
     double       end, step, growth, largest_step, smallest_step;
+    double       energy_tolerance = 0; ///< 0: none
     unsigned int largest_number_of_steps;
 
     bool

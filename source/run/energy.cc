@@ -1,0 +1,105 @@
+#include <impm/base/exceptions.h>
+#include <impm/run/simulation.h>
+
+#include <algorithm>
+#include <sstream>
+
+// What a run does about its energy.
+namespace impm
+{
+  using namespace dealii;
+
+  template <int dim>
+  double
+  Simulation<dim>::energy_gain_of_step() const
+  {
+    const auto &spec = scene.time;
+    if (!spec.has_inertia() || spec.is_explicit() ||
+        std::any_of(scene.bodies.begin(),
+                    scene.bodies.end(),
+                    [](const auto &body) {
+                      return !body.rigid && !body.material->has_potential();
+                    }))
+      return 0;
+    const auto &motion = problem->motion;
+    double      gain =
+      problem->response.potential - problem->response.start_potential;
+    for (unsigned int i = 0; i < motion.velocity.locally_owned_size(); ++i)
+      {
+        const double v = motion.velocity.local_element(i);
+        const double w = result.velocity.local_element(i);
+        gain += 0.5 * motion.mass.local_element(i) * (w - v) * (w + v);
+      }
+    return Utilities::MPI::sum(gain, communicator) - step_work.external;
+  }
+
+  template <int dim>
+  std::string
+  Simulation<dim>::check_energy()
+  {
+    step_gain           = energy_gain_of_step();
+    const auto  &budget = history.energy();
+    const double gain   = budget.relative(step_gain);
+    if (!budget.forbids(step_gain,
+                        std::abs(step_work.external),
+                        scene.time.energy_tolerance))
+      return "";
+    std::ostringstream text;
+    text << "the step gains " << 100 * gain
+         << " % of the largest energy by itself: the time integrator does so "
+            "where bodies turn far in a step; the energy-momentum method does "
+            "not";
+    return text.str();
+  }
+
+  template <int dim>
+  void
+  Simulation<dim>::watch_energy()
+  {
+    if (scene.time.energy_tolerance == 0)
+      return;
+    const auto        &budget = history.energy();
+    const double       gain   = budget.relative(budget.gain);
+    std::ostringstream text;
+    if (gain < -0.25)
+      {
+        text << "the run has lost " << -100 * gain
+             << " % of the largest energy that it had to time integration, "
+                "transfer and stabilization: meant only where a body is to "
+                "come to rest";
+        warn("energy loss", text.str());
+      }
+    if (gain <= scene.time.energy_tolerance)
+      return;
+    text << "the run has gained energy by itself, " << 100 * gain
+         << " % of the largest that it had";
+    // Not more than it ever had, since that has grown, too.
+    if (gain < 0.5)
+      {
+        warn("energy gain", text.str());
+        return;
+      }
+    std::ostringstream where;
+    where
+      << "at t = " << time << " s, step " << total.step << ": " << text.str()
+      << ": "
+      << (scene.time.is_explicit() ?
+            "explicit steps are too long, perhaps for nodes of little mass" :
+            "the time integrator is unstable here, or points carry "
+            "accelerations that the grid does not see");
+    throw ComputationError(where.str());
+  }
+
+  template double
+  Simulation<2>::energy_gain_of_step() const;
+  template double
+  Simulation<3>::energy_gain_of_step() const;
+  template std::string
+  Simulation<2>::check_energy();
+  template std::string
+  Simulation<3>::check_energy();
+  template void
+  Simulation<2>::watch_energy();
+  template void
+  Simulation<3>::watch_energy();
+} // namespace impm

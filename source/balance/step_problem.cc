@@ -59,7 +59,8 @@ namespace impm
                                 FootprintBuilder<dim>     &builder,
                                 WorkCounts                &counts,
                                 const double               time,
-                                const double               dt)
+                                const double               dt,
+                                const StepDamping         &damping)
     : time(time)
     , dt(dt)
     , integrator(integrator)
@@ -123,8 +124,9 @@ namespace impm
               nullptr)
     , start_forces(find_start_forces())
     , start_acceleration(find_start_acceleration())
-    , nodal_forces(
-        make_nodal_forces(points, scene.stabilization.isolated_stiffness))
+    , nodal_forces(make_nodal_forces(points,
+                                     scene.stabilization.isolated_stiffness,
+                                     damping))
     , smoothing(
         scene.time.momentum_formulation ?
           std::make_unique<VelocitySmoothing<dim>>(
@@ -202,7 +204,8 @@ namespace impm
   template <int dim>
   std::unique_ptr<NodalForces>
   StepProblem<dim>::make_nodal_forces(const MaterialPoints<dim> &points,
-                                      const double isolated_stiffness)
+                                      const double       isolated_stiffness,
+                                      const StepDamping &damping)
   {
     if (integrator.is_explicit()) // which solves for the nodes by itself
       return nullptr;
@@ -218,19 +221,36 @@ namespace impm
                                              integrator.mass_factor(dt),
                                              std::move(known));
       }
-    if (isolated_stiffness == 0)
-      return nullptr;
-    const IsolatedCells<dim> isolated(points,
-                                      footprints,
-                                      populated,
-                                      *discretization,
-                                      constraints,
-                                      isolated_stiffness);
-    n_held_cells = isolated.n;
-    return n_held_cells == 0 ? nullptr :
-                               std::make_unique<NodalForces>(isolated.stiffness,
-                                                             1.,
-                                                             std::move(known));
+    Vector stiffness;
+    if (isolated_stiffness > 0)
+      {
+        IsolatedCells<dim> isolated(points,
+                                    footprints,
+                                    populated,
+                                    *discretization,
+                                    constraints,
+                                    isolated_stiffness);
+        n_held_cells = isolated.n;
+        if (n_held_cells > 0)
+          stiffness = std::move(isolated.stiffness);
+      }
+    if (damping.factor > 0)
+      {
+        if (stiffness.size() == 0)
+          discretization->initialize(stiffness);
+        for (unsigned int i = 0; i < stiffness.locally_owned_size(); ++i)
+          if (!constraints.is_constrained[i])
+            stiffness.local_element(i) +=
+              damping.factor / discretization->smallest_cell_extent *
+              norm->unit_strain_forces.local_element(i);
+        if (damping.mode)
+          known.add(damping.push, *damping.mode);
+      }
+    return stiffness.size() == 0 ?
+             nullptr :
+             std::make_unique<NodalForces>(std::move(stiffness),
+                                           1.,
+                                           std::move(known));
   }
 
   template <int dim>
@@ -240,7 +260,7 @@ namespace impm
     std::vector<const Term *> terms;
     if (ghost_penalty)
       terms.push_back(ghost_penalty.get());
-    if (n_held_cells > 0)
+    if (nodal_forces && !integrator.has_inertia())
       terms.push_back(nodal_forces.get());
     return terms;
   }

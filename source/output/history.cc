@@ -29,6 +29,8 @@ namespace impm
     splits += before.splits;
     merges += before.merges;
     grid_resets += before.grid_resets;
+    unstable += before.unstable;
+    damped += before.damped;
   }
 
   namespace
@@ -94,7 +96,9 @@ namespace impm
                   {"smallest_points_per_cell", density.smallest},
                   {"mean_points_per_cell", density.mean},
                   {"imbalance", report.imbalance},
-                  {"energy_gain", energy_gain}});
+                  {"energy_gain", energy_gain},
+                  {"unstable_equilibria", report.unstable},
+                  {"damped_steps", report.damped}});
       return row;
     }
 

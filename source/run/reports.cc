@@ -71,6 +71,8 @@ namespace impm
                                {"splits", total.splits},
                                {"merges", total.merges},
                                {"grid_resets", total.grid_resets},
+                               {"unstable_equilibria", total.unstable},
+                               {"damped_steps", total.damped},
                                {"stress_evaluations",
                                 Utilities::MPI::sum(counts.stress_evaluations,
                                            communicator)},

@@ -182,7 +182,16 @@ namespace impm
       TimerOutput::Scope scope(timer, "set-up of the step");
       problem.reset();
       problem = std::make_unique<StepProblem<dim>>(
-        scene, grid, points, rigid, *integrator, builder, counts, time, dt);
+        scene,
+        grid,
+        points,
+        rigid,
+        *integrator,
+        builder,
+        counts,
+        time,
+        dt,
+        jump.damping(grid.discretization()->smallest_cell_extent));
     }
     const auto solution =
       solve_step(*problem, scene.solver, timer, result.increment);
@@ -201,6 +210,11 @@ namespace impm
                        " /" + std::to_string(1 / solution.step_lengths[i]) :
                        "");
     console.detail("  residuals:" + iterations.str());
+    if (solution.unstable_mode.size() > 0)
+      {
+        report_instability(solution.unstable_mode);
+        jump.mode = solution.unstable_mode;
+      }
     if (!solution.converged)
       return solution.failure;
     problem->footprints.interpolate(result.increment, increments);
@@ -260,12 +274,19 @@ namespace impm
                                      time + dt);
         if (part == 1)
           break;
+        if (failed && can_jump() &&
+            (jump.is_on() || jump.mode.size() > 0 || control.is_too_short()))
+          {
+            dt = jump.is_on() ? dt : control.cut_to_smallest();
+            damp(failure);
+            continue;
+          }
         ++report.step_cuts;
         console.detail("  step cut at t = " + std::to_string(time) +
                        ", dt = " + std::to_string(dt) + ": " +
                        (failed ? failure : "a node reaches a rigid body"));
         dt = control.cut(part, failed);
-        if (failed && control.is_too_short())
+        if (failed && control.is_too_short() && !can_jump())
           {
             std::ostringstream where;
             where << "at t = " << time << " s, step " << report.step << ": "
@@ -288,8 +309,10 @@ namespace impm
     report.stabilization_work = work.stabilization;
     history.take_figures(*problem, end_forces);
     watch_faces();
+    report.damped = jump.is_on();
     commit();
-    control.accept();
+    control.accept(!jump.is_on());
+    jump.end_step(off_grid.in_cells);
     report.time         = time;
     report.wall_seconds = wall_seconds();
     total.append(report);
@@ -439,6 +462,7 @@ namespace impm
         write_summary(error.what());
         throw;
       }
+    report_energy_loss();
     write_summary("done", finer_runs);
   }
 

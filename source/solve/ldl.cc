@@ -222,4 +222,19 @@ namespace impm
                                    cholmod->communicator);
     AssertThrowMPI(error);
   }
+
+  unsigned int
+  Ldl::n_negative() const
+  {
+    unsigned int n = 0;
+    // Of a column that is not supernodal, its pivot comes first.
+    if (const auto *factor = cholmod->factor; cholmod->is_first)
+      {
+        const auto *starts = static_cast<const int *>(factor->p);
+        const auto *values = static_cast<const double *>(factor->x);
+        for (std::size_t column = 0; column < factor->n; ++column)
+          n += values[starts[column]] < 0;
+      }
+    return Utilities::MPI::broadcast(cholmod->communicator, n);
+  }
 } // namespace impm

@@ -7,6 +7,7 @@
 #include <impm/base/exceptions.h>
 #include <impm/solve/linear_solver.h>
 #include <impm/solve/linear_solver_choice.h>
+#include <impm/solve/negative_curvature.h>
 
 namespace impm
 {
@@ -213,13 +214,43 @@ namespace impm
     if (!needs_matrix && !is_factorized)
       assemble();
     TimerOutput::Scope scope(timer, "direct solver");
+    factorize();
+    direct->solve(solution, right_side);
+    return answer(is_direct ? 1 : spec.linear_iterations);
+  }
+
+  void
+  LinearSolver::factorize()
+  {
     if (!direct)
       direct =
         std::make_unique<DirectSolver>(*matrix, spec.has_symmetric_matrix);
     if (!is_factorized)
       direct->factorize();
     is_factorized = true;
-    direct->solve(solution, right_side);
-    return answer(is_direct ? 1 : spec.linear_iterations);
+  }
+
+  bool
+  LinearSolver::find_negative_curvature(Vector &direction)
+  {
+    const bool is_direct = kind == LinearSolverKind::direct;
+    if (!needs_matrix || (!is_direct && !preconditioner.vmult))
+      return false;
+    TimerOutput::Scope scope(timer, "stability");
+    LinearMap          inverse = preconditioner;
+    if (is_direct)
+      {
+        factorize();
+        if (direct->is_positive())
+          return false;
+        inverse.vmult = [this](Vector &dst, const Vector &src) {
+          direct->solve(dst, src);
+        };
+      }
+    Vector mode;
+    if (!impm::find_negative_curvature(*matrix, inverse, is_direct, mode))
+      return false;
+    unknowns.unpack(mode, direction);
+    return true;
   }
 } // namespace impm

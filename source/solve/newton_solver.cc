@@ -36,6 +36,7 @@ namespace impm
       }
     result.linear_iterations = n_linear_iterations;
     result.projections       = n_projections;
+    result.unstable_mode     = unstable_mode;
     return result;
   }
 
@@ -145,6 +146,8 @@ namespace impm
     const auto go = [&]() {
       n_linear_iterations += linear_solver.solve(step, right_side);
       ++n_solves;
+      watch_stability();
+      leave_saddle();
       u = guess;
       u += lift;
       u += step;
@@ -181,6 +184,8 @@ namespace impm
     }};
     const auto      answer  = [&]() {
       bfgs.apply(step, right_side, inverse);
+      watch_stability();
+      leave_saddle();
       return -system.work_along(step, right_side);
     };
     double slope = answer();
@@ -198,6 +203,43 @@ namespace impm
       }
     system.interpolate_hanging(step);
     return slope;
+  }
+
+  void
+  NewtonSolver::watch_stability()
+  {
+    if (is_watched || spec.unstable_equilibria == UnstableEquilibria::ignore ||
+        !has_potential)
+      return;
+    is_watched = true;
+    Vector mode;
+    system.initialize(mode);
+    if (!linear_solver.find_negative_curvature(mode))
+      return;
+    system.set_zero(mode);
+    unstable_mode = mode;
+  }
+
+  void
+  NewtonSolver::leave_saddle()
+  {
+    if (unstable_mode.size() == 0 || !is_fresh ||
+        spec.unstable_equilibria != UnstableEquilibria::leave)
+      return;
+    Vector image;
+    system.initialize(image);
+    system.vmult(image, unstable_mode);
+    const double curvature = system.work_along(unstable_mode, image);
+    if (curvature >= 0)
+      return;
+    // Newton's method goes uphill along it, as far as it should go down; where
+    // nothing pulls, to one side.
+    const double pull   = system.work_along(unstable_mode, right_side);
+    const double uphill = pull / curvature;
+    const double extent = system.length_scale();
+    const double wanted =
+      std::clamp(std::abs(uphill), 0.05 * extent, 0.5 * extent);
+    step.add((pull < 0 ? -wanted : wanted) - uphill, unstable_mode);
   }
 
   double

@@ -17,6 +17,18 @@
 namespace impm
 {
   /**
+   * Springs on all free nodes that hold what a quasi-static step may move: at
+   * each the force of the material at a strain of one over a cell, times a
+   * factor. They are at rest where the step begins, or pushed along a mode.
+   */
+  struct StepDamping
+  {
+    double        factor = 0; ///< none
+    double        push   = 0; ///< (m)
+    const Vector *mode   = nullptr;
+  };
+
+  /**
    * Everything that belongs to one step and dies with it: where the points
    * touch the grid, what holds its nodes, their motion at the start, the trial
    * state of the points, the forces, and the balance of momentum. Making
@@ -39,7 +51,8 @@ namespace impm
                 FootprintBuilder<dim>     &builder,
                 WorkCounts                &counts,
                 double                     time,
-                double                     dt);
+                double                     dt,
+                const StepDamping         &damping = {});
 
     StepProblem(const StepProblem &) = delete;
 
@@ -77,7 +90,8 @@ namespace impm
                0.;
     }
 
-    /** Those of the terms that are no physics: ghost penalty, springs. */
+    /** Those of the terms that are no physics: ghost penalty, springs of pieces
+     * that nothing holds and of damping. */
     std::vector<const Term *>
     stabilization() const;
 
@@ -129,7 +143,8 @@ namespace impm
 
     std::unique_ptr<NodalForces>
     make_nodal_forces(const MaterialPoints<dim> &points,
-                      double                     isolated_stiffness);
+                      double                     isolated_stiffness,
+                      const StepDamping         &damping);
   };
 } // namespace impm
 

@@ -31,6 +31,8 @@ namespace impm
     double internal_work      = 0; ///< of the stresses, as seen by the grid (J)
     double stabilization_work = 0; ///< of ghost penalty and holding (J)
     unsigned int splits = 0, merges = 0, grid_resets = 0;
+    unsigned int unstable = 0; ///< steps from an equilibrium that is not stable
+    unsigned int damped   = 0; ///< steps that end in none
     double       imbalance = 1; ///< cost of the busiest rank over the mean
     /** Since the start, gained where points were split or merged (J). */
     double resampling_kinetic_energy = 0, resampling_internal_energy = 0;
@@ -48,7 +50,7 @@ namespace impm
         &line_searches &step_cuts &projections &solver_fallbacks &noise_stops
           &held_cells &limited_boxes &active_cells &dofs &residual
             &external_work &internal_work &stabilization_work &splits &merges
-              &grid_resets &resampling_kinetic_energy
+              &grid_resets &unstable &damped &resampling_kinetic_energy
                 &resampling_internal_energy &imbalance &wall_seconds;
     }
   };

@@ -11,6 +11,7 @@
 #include <impm/output/pictures.h>
 #include <impm/output/warnings.h>
 #include <impm/run/checkpoint_files.h>
+#include <impm/run/jump.h>
 #include <impm/run/solve_step.h>
 #include <impm/run/work_done.h>
 #include <impm/study/reference.h>
@@ -83,6 +84,10 @@ namespace impm
     void
     watch_energy();
 
+    /** Warns, at the end, of much energy that was lost. */
+    void
+    report_energy_loss();
+
     /** Lets the policy change the cells, and ranks share the work anew. */
     void
     adapt();
@@ -126,6 +131,24 @@ namespace impm
     /** Says what is the first of its kind. Alike on all ranks. */
     void
     warn(const std::string &kind, const std::string &text);
+
+    /** Whether steps that fail may be damped. */
+    bool
+    can_jump() const
+    {
+      return scene.solver.unstable_equilibria == UnstableEquilibria::leave;
+    }
+
+    /** After an attempt that failed where a shorter one does not help: warns,
+     * and damps the next one more; throws ComputationError where that does not
+     * help either. */
+    void
+    damp(const std::string &failure);
+
+    /** Warns of a mode along which the equilibrium at the start of a step is
+     * not stable. Collective. */
+    void
+    report_instability(const Vector &mode);
 
     /** Warns of prescribed faces that have lost their material. Collective. */
     void
@@ -214,6 +237,7 @@ namespace impm
     typename WorkDone<dim>::Step step_work; ///< of the step that is solved
     Vector       end_forces;    ///< of the step that is solved, see StepProblem
     double       step_gain = 0; ///< likewise, see energy_gain_of_step()
+    Jump         jump;          ///< that is on its way, if any
     PointChanges resampled;     ///< since the start
 
     Pictures<dim>             pictures;

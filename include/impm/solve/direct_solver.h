@@ -25,6 +25,13 @@ namespace impm
     void
     solve(Vector &x, const Vector &b);
 
+    /** Whether no eigenvalue is negative for sure, of a symmetric matrix. */
+    bool
+    is_positive() const
+    {
+      return !lu.vmult && ldl && ldl->n_negative() == 0;
+    }
+
   private:
     const SparseMatrix        &matrix;
     const std::unique_ptr<Ldl> ldl; ///< or null

@@ -29,6 +29,11 @@ namespace impm
     void
     solve(Vector &x, const Vector &b);
 
+    /** How many eigenvalues of what was factorized are negative: as many as
+     * pivots (Sylvester). Collective. */
+    unsigned int
+    n_negative() const;
+
   private:
     struct Cholmod;
 

@@ -48,7 +48,18 @@ namespace impm
     unsigned int
     solve(Vector &x, const Vector &b);
 
+    /**
+     * Looks for a direction along which the tangent that was taken last, a
+     * symmetric one, is negative, as far as there is a matrix of it. Its
+     * largest value is one.
+     */
+    bool
+    find_negative_curvature(Vector &direction);
+
   private:
+    void
+    factorize();
+
     void
     assemble();
 

@@ -28,6 +28,9 @@ namespace impm
       std::vector<double> residuals;             ///< scaled, one an iterate
       std::vector<double> step_lengths;          ///< after backtracking
       std::string         failure;               ///< why not converged
+      /** Along which the equilibrium at the start is not stable: its largest
+       * value is one; empty if it is, or none looks. */
+      Vector unstable_mode;
     };
 
     NewtonSolver(const SolverSpec    &spec,
@@ -77,6 +80,16 @@ namespace impm
     void
     take_tangent(const Vector &u);
 
+    /** With the first tangent of a step: looks for a mode along which it is
+     * negative. */
+    void
+    watch_stability();
+
+    /** If the tangent as it is now still is, turns the part of `step` along the
+     * mode downhill. */
+    void
+    leave_saddle();
+
     const SolverSpec &spec;
     NonlinearSystem  &system;
     const bool        has_potential, uses_bfgs;
@@ -85,6 +98,8 @@ namespace impm
     Bfgs              bfgs;
     bool              has_tangent = false; ///< taken in this step
     bool              is_fresh    = false; ///< and at this iterate
+    bool              is_watched  = false; ///< the stability of the start
+    Vector            unstable_mode;
     Vector            step, trial, right_side;
     unsigned int      n_linear_iterations = 0, n_projections = 0;
   };

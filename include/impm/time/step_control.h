@@ -48,6 +48,14 @@ namespace impm
       return dt;
     }
 
+    /** To the shortest at once, where what is between does not help. */
+    double
+    cut_to_smallest()
+    {
+      return cut(std::min(1., spec.smallest_step * spec.step * unit / dt),
+                 true);
+    }
+
     /** Whether a step of that length is too short to go on with. */
     bool
     is_too_short() const
@@ -55,11 +63,12 @@ namespace impm
       return dt < spec.smallest_step * spec.step * unit;
     }
 
-    /** The step was made: grow, after cuts back to the nominal step first. */
+    /** The step was made: grow, if it may, after cuts back to the nominal step
+     * first. */
     void
-    accept()
+    accept(const bool may_grow = true)
     {
-      if (!failed)
+      if (!failed && may_grow)
         size = size < spec.step ?
                  std::min(1.5 * size, spec.step) :
                  std::min(size * spec.growth, spec.largest_step);

@@ -193,6 +193,17 @@ namespace impm
     add_newton(section, solver);
     add_linear_solver(section, solver);
     check_symmetry(section, solver, time, bodies);
+    if (!time.has_inertia() && solver.has_symmetric_matrix &&
+        solver.linear_solver != LinearSolverKind::gmres)
+      section.add(
+        "Unstable equilibria",
+        solver.unstable_equilibria,
+        {{"leave", UnstableEquilibria::leave},
+         {"warn", UnstableEquilibria::warn},
+         {"ignore", UnstableEquilibria::ignore}},
+        "Where the tangent at the start of a step is not positive, as "
+        "past the load under which a column buckles: leave it for a "
+        "stable one and warn, go on and warn, or do not look.");
     if (solver.bfgs_updates > 0 && solver.tangent != TangentKind::matrix)
       section.refuse("Operator",
                      "allowed with 'Nonlinear solver = BFGS', which keeps a "

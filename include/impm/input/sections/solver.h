@@ -45,8 +45,17 @@ namespace impm
     none
   };
 
+  /** What a quasi-static run does about an equilibrium that is not stable. */
+  enum class UnstableEquilibria
+  {
+    ignore,
+    warn,
+    leave ///< for a stable one
+  };
+
   struct SolverSpec
   {
+    UnstableEquilibria unstable_equilibria    = UnstableEquilibria::ignore;
     Convergence        convergence            = Convergence::residual;
     ResidualScale      residual_scale         = ResidualScale::body;
     double             newton_tolerance       = 0;

@@ -1,0 +1,82 @@
+#include <impm/base/exceptions.h>
+#include <impm/run/simulation.h>
+
+#include <cmath>
+#include <sstream>
+
+// What a run says of equilibria that are not stable.
+namespace impm
+{
+  using namespace dealii;
+
+  template <int dim>
+  void
+  Simulation<dim>::report_instability(const Vector &mode)
+  {
+    // Where the mode is largest, and along which axis.
+    struct
+    {
+      double value = -1;
+      int    rank;
+    } largest, best;
+    MPI_Comm_rank(communicator, &largest.rank);
+    unsigned int place = 0;
+    for (unsigned int i = 0; i < mode.locally_owned_size(); ++i)
+      if (std::abs(mode.local_element(i)) > largest.value * (1 + 1e-6))
+        {
+          largest.value = std::abs(mode.local_element(i));
+          place         = i;
+        }
+    const int error = MPI_Allreduce(
+      &largest, &best, 1, MPI_DOUBLE_INT, MPI_MAXLOC, communicator);
+    AssertThrowMPI(error);
+    std::ostringstream text;
+    text << "the equilibrium at t = " << time << " s is not stable";
+    for (const auto &[name, value] : history.last_figures())
+      text << ", " << name << " = " << value;
+    const auto where = Utilities::MPI::broadcast(
+      communicator,
+      std::make_pair(problem->discretization->node_positions[place / dim],
+                     place % dim),
+      best.rank);
+    text << ": it bifurcates, or loads have passed their limit, along a mode "
+            "that moves most at "
+         << where.first << " m in direction "
+         << "xyz"[where.second];
+    if (scene.solver.unstable_equilibria == UnstableEquilibria::leave)
+      text << "; the run goes on to a stable one";
+    report.unstable = 1;
+    warn("unstable equilibrium", text.str());
+  }
+
+  template <int dim>
+  void
+  Simulation<dim>::damp(const std::string &failure)
+  {
+    const bool begins = !jump.is_on();
+    if (!jump.damp_more())
+      {
+        std::ostringstream where;
+        where << "at t = " << time << " s, step " << report.step << ": "
+              << failure << ", with damped steps, too: no stable equilibrium "
+              << "is near (a body that is torn, has collapsed or that nothing "
+              << "holds, or a load beyond what it can bear)";
+        throw ComputationError(where.str());
+      }
+    if (!begins)
+      return;
+    std::ostringstream text;
+    text << "there is no equilibrium near that at t = " << time << " s ("
+         << failure << "): damped steps look for one";
+    warn("jump", text.str());
+  }
+
+  template void
+  Simulation<2>::damp(const std::string &);
+  template void
+  Simulation<3>::damp(const std::string &);
+  template void
+  Simulation<2>::report_instability(const Vector &);
+  template void
+  Simulation<3>::report_instability(const Vector &);
+} // namespace impm

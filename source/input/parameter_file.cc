@@ -7,6 +7,7 @@
 #include <impm/input/parameter_messages.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <set>
@@ -299,7 +300,10 @@ namespace impm
       {
         // one of them is no number
       }
-    if (values.size() != n)
+    if (values.size() != n ||
+        !std::all_of(values.begin(), values.end(), [](const double value) {
+          return std::isfinite(value);
+        }))
       throw InputError(entry,
                        "found '" + prm.get(entry) + "', allowed are " +
                          std::to_string(n) + " numbers");

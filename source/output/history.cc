@@ -2,8 +2,10 @@
 #include <impm/base/names.h>
 #include <impm/output/history.h>
 #include <impm/output/probes.h>
+#include <impm/points/deformation_drift.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <iomanip>
 #include <limits>
@@ -45,6 +47,7 @@ namespace impm
              const Totals<dim>   &totals,
              const double         start_kinetic_energy,
              const double         energy_gain,
+             const double         drift,
              const Figures       &figures)
     {
       Figures row = {{"step", report.step},
@@ -98,7 +101,8 @@ namespace impm
                   {"imbalance", report.imbalance},
                   {"energy_gain", energy_gain},
                   {"unstable_equilibria", report.unstable},
-                  {"damped_steps", report.damped}});
+                  {"damped_steps", report.damped},
+                  {"deformation_drift", drift}});
       return row;
     }
 
@@ -168,7 +172,7 @@ namespace impm
       figures.emplace_back(reaction.name, 0);
     std::vector<std::string> names;
     for (const auto &column :
-         make_row<dim>(scene.geometry, {}, 0, {}, {}, 0, 0, figures))
+         make_row<dim>(scene.geometry, {}, 0, {}, {}, 0, 0, 0, figures))
       names.push_back(column.first);
     return names;
   }
@@ -195,6 +199,7 @@ namespace impm
     const auto at_start  = total(points);
     start_kinetic_energy = at_start.kinetic_energy;
     budget.begin(all_energy(at_start));
+    may_drift = !grid.is_lagrangian && deformation_drift(points) < 1e-3;
     for (const auto &probe : scene.output.probes)
       probes.push_back(make_probe(
         probe, scene, points, rigid, grid, &followed[probes.size()]));
@@ -281,9 +286,14 @@ namespace impm
       potential_is_energy && report.splits == 0 && report.merges == 0;
     const auto totals =
       total(points, is_known ? std::optional(potential) : std::nullopt);
+    if (!std::isfinite(all_energy(totals)))
+      throw ComputationError("at t = " + Utilities::to_string(report.time) +
+                             " s: the energy of the points is no finite "
+                             "number: they are too fast, or too much deformed");
     budget.update(all_energy(totals),
                   report.external_work + report.resampling_kinetic_energy +
                     report.resampling_internal_energy);
+    drift               = may_drift ? deformation_drift(points) : 0.;
     const auto n_points = points.sorted.n_global();
     density             = points_per_cell(grid, points);
     figures.clear();
@@ -304,6 +314,7 @@ namespace impm
                               totals,
                               start_kinetic_energy,
                               budget.gain,
+                              drift,
                               figures);
     std::ostringstream line;
     line << std::setprecision(12);

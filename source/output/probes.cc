@@ -92,69 +92,78 @@ namespace impm
       }
     if (spec.kind == Kind::point)
       *id = nearest_point(spec.position, points, false);
-    return
-      [&spec, &bodies = scene.bodies, &points, component, field, id](double) {
-        // Points that split or merge hand on the place.
-        if (spec.kind == Kind::point && points.layout.find("parent"))
-          *id = nearest_point(spec.position, points, true);
-        if (field)
-          field->prepare();
-        const double limit    = std::numeric_limits<double>::max();
-        double       smallest = limit, largest = -limit, sum = 0, weight = 0;
-        unsigned int p = 0;
-        for (const auto &particle : points.sorted.particles)
-          {
-            const unsigned int point = p++;
-            if (spec.kind == Kind::point ?
-                  points.id(point) != *id :
-                  !spec.bodies.empty() &&
-                    std::count(spec.bodies.begin(),
-                               spec.bodies.end(),
-                               bodies[points.body(point)].name) == 0)
-              continue;
-            if (spec.where &&
-                !(spec.where(points.initial_position(point).begin_raw()) > 0))
-              continue;
-            double values[9] = {};
-            if (field)
-              field->evaluate(point, particle.get_location(), values);
-            double value = values[component];
-            if (spec.kind == Kind::point && spec.field == "displacement" &&
-                component < dim)
-              {
-                // From the point to the place that was asked for.
-                const auto F     = deformation_gradient(points, point);
-                const auto start = points.initial_position(point);
-                for (unsigned int d = 0; d < dim; ++d)
-                  value += (F[component][d] - (component == d ? 1 : 0)) *
-                           (spec.position[d] - start[d]);
-              }
-            if (spec.kind == Kind::extent)
-              {
-                // Half the box that the point stands for, stretched by F.
-                const auto    F = deformation_gradient(points, point);
-                const double *domain =
-                  points.fields(point) + points.layout.offset("initial_domain");
-                value = particle.get_location()[component];
-                for (unsigned int d = 0; d < dim; ++d)
-                  value += 0.5 * std::abs(F[component][d]) * domain[d];
-              }
-            smallest = std::min(smallest, value);
-            largest  = std::max(largest, value);
-            sum += value * points.initial_volume(point);
-            weight += points.initial_volume(point);
-          }
-        const auto comm = points.communicator;
-        if (spec.kind == Kind::mean)
-          return Utilities::MPI::sum(sum, comm) /
-                 Utilities::MPI::sum(weight, comm);
-        if (spec.kind == Kind::smallest)
-          return Utilities::MPI::min(smallest, comm);
-        largest = Utilities::MPI::max(largest, comm);
-        return spec.kind == Kind::spread ?
-                 largest - Utilities::MPI::min(smallest, comm) :
-                 largest;
+    const auto is_meant =
+      [&spec, &bodies = scene.bodies, &points](const unsigned int point) {
+        return (spec.bodies.empty() ||
+                std::count(spec.bodies.begin(),
+                           spec.bodies.end(),
+                           bodies[points.body(point)].name) > 0) &&
+               (!spec.where ||
+                spec.where(points.initial_position(point).begin_raw()) > 0);
       };
+    unsigned int n_meant = 0;
+    for (unsigned int point = 0; point < points.size(); ++point)
+      n_meant += is_meant(point);
+    if (spec.kind != Kind::point &&
+        Utilities::MPI::sum(n_meant, points.communicator) == 0)
+      throw InputError("Output/" + spec.name +
+                         (spec.where ? "/Where" : "/Bodies"),
+                       "makes the probe be of no point at all");
+    return [&spec, is_meant, &points, component, field, id](double) {
+      // Points that split or merge hand on the place.
+      if (spec.kind == Kind::point && points.layout.find("parent"))
+        *id = nearest_point(spec.position, points, true);
+      if (field)
+        field->prepare();
+      const double limit    = std::numeric_limits<double>::max();
+      double       smallest = limit, largest = -limit, sum = 0, weight = 0;
+      unsigned int p = 0;
+      for (const auto &particle : points.sorted.particles)
+        {
+          const unsigned int point = p++;
+          if (spec.kind == Kind::point ? points.id(point) != *id :
+                                         !is_meant(point))
+            continue;
+          double values[9] = {};
+          if (field)
+            field->evaluate(point, particle.get_location(), values);
+          double value = values[component];
+          if (spec.kind == Kind::point && spec.field == "displacement" &&
+              component < dim)
+            {
+              // From the point to the place that was asked for.
+              const auto F     = deformation_gradient(points, point);
+              const auto start = points.initial_position(point);
+              for (unsigned int d = 0; d < dim; ++d)
+                value += (F[component][d] - (component == d ? 1 : 0)) *
+                         (spec.position[d] - start[d]);
+            }
+          if (spec.kind == Kind::extent)
+            {
+              // Half the box that the point stands for, stretched by F.
+              const auto    F = deformation_gradient(points, point);
+              const double *domain =
+                points.fields(point) + points.layout.offset("initial_domain");
+              value = particle.get_location()[component];
+              for (unsigned int d = 0; d < dim; ++d)
+                value += 0.5 * std::abs(F[component][d]) * domain[d];
+            }
+          smallest = std::min(smallest, value);
+          largest  = std::max(largest, value);
+          sum += value * points.initial_volume(point);
+          weight += points.initial_volume(point);
+        }
+      const auto comm = points.communicator;
+      if (spec.kind == Kind::mean)
+        return Utilities::MPI::sum(sum, comm) /
+               Utilities::MPI::sum(weight, comm);
+      if (spec.kind == Kind::smallest)
+        return Utilities::MPI::min(smallest, comm);
+      largest = Utilities::MPI::max(largest, comm);
+      return spec.kind == Kind::spread ?
+               largest - Utilities::MPI::min(smallest, comm) :
+               largest;
+    };
   }
 
   template decltype(make_probe<2>) make_probe<2>;

@@ -157,6 +157,19 @@ namespace impm
                 "or begin with more";
         warn("few points", text.str());
       }
+    if (history.last_drift() > 0.15)
+      {
+        std::ostringstream text;
+        text << "the deformation of the points has drifted from how they lie, "
+                "by "
+             << 100 * history.last_drift()
+             << " % of their strain: so may forces; "
+             << (scene.grid.method == GridMethod::mpm ?
+                   "points that cross cells need Grid/Method = GIMP, or a grid "
+                   "that follows the body" :
+                   "smaller steps, or points that split, may help");
+        warn("deformation drift", text.str());
+      }
     watch_energy();
     if (reference.follows_steps())
       {

@@ -127,6 +127,8 @@ namespace impm
       return body.adaptation >= PointAdaptation::split;
     });
     const bool needs_initial_position =
+      // by which plain points know how far they have drifted
+      scene.grid.method == GridMethod::mpm ||
       scene.loads.body_force_is_initial ||
       any_of(scene.loads.tractions,
              [](const auto &traction) { return traction.is_initial; }) ||

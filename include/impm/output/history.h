@@ -101,7 +101,8 @@ namespace impm
 
     /**
      * Adds a row, after the points have moved, on all that happened since the
-     * row before. Collective.
+     * row before. Throws ComputationError when their energy is not finite.
+     * Collective.
      */
     void
     write(const StepReport &report);
@@ -116,6 +117,13 @@ namespace impm
     /** The rows so far, as the file has them; on the first rank alone. */
     CsvTable
     table() const;
+
+    /** See deformation_drift(), at the last row. */
+    double
+    last_drift() const
+    {
+      return drift;
+    }
 
     /** At the last row. */
     const EnergyBudget &
@@ -134,7 +142,8 @@ namespace impm
     void
     serialize(Archive &archive, const unsigned int /*version*/)
     {
-      archive &followed &start_kinetic_energy &budget &figures &density &size;
+      archive &followed &start_kinetic_energy &budget &may_drift &drift &figures
+        &density &size;
     }
 
     /** Of the last row. */
@@ -164,6 +173,8 @@ namespace impm
     double        potential = 0; ///< in the last step, of this rank (J)
     double        start_kinetic_energy;
     EnergyBudget  budget;
+    bool          may_drift = true; ///< points began where F says
+    double        drift     = 0;
     Figures       figures;
     std::string   file_name;
     std::ofstream file;

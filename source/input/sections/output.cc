@@ -192,6 +192,10 @@ namespace impm
                         dim,
                         "The force of the material on it is projected on this "
                         "vector.");
+      if (std::all_of(reaction.direction.begin(),
+                      reaction.direction.end(),
+                      [](const double value) { return value == 0; }))
+        section.refuse("Direction", "allowed is a vector that is not zero");
       section.add("Factor", reaction.factor, {"1"}, "Multiplies the figure.");
     }
   } // namespace

@@ -70,7 +70,7 @@ TEST(Memory, OfAPointIsBoundedByOwner)
            {{"footprints", 165},
             {"ghost_penalty", 35},
             {"matrix", 240},
-            {"points", 100},
+            {"points", 116},
             {"response", 176}});
   }
   {
@@ -88,7 +88,7 @@ TEST(Memory, OfAPointIsBoundedByOwner)
            {{"footprints", 335},
             {"ghost_penalty", 116},
             {"matrix", 980},
-            {"points", 156},
+            {"points", 180},
             {"response", 576}});
   }
   {

@@ -102,7 +102,8 @@ namespace impm
                   {"energy_gain", energy_gain},
                   {"unstable_equilibria", report.unstable},
                   {"damped_steps", report.damped},
-                  {"deformation_drift", drift}});
+                  {"deformation_drift", drift},
+                  {"pieces", report.pieces}});
       return row;
     }
 

@@ -124,7 +124,7 @@ namespace impm
       Utilities::MPI::sum(counts.stress_evaluations, communicator);
     archive &time &total &since_row &control &jump &work &resampled
       &best_imbalance &adapted_step &off_grid &pictures &history &reference
-        &warnings &face_holds &counts.operator_applications &counts
+        &warnings &face_holds &pieces &counts.operator_applications &counts
           .tangents &counts.hierarchies &counts.solver_fallbacks &counts
           .direct_systems                                        &counts
           .iterative_systems &evaluations &seconds               &seconds_by;

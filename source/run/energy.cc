@@ -76,7 +76,7 @@ namespace impm
       << "at t = " << time << " s, step " << total.step << ": " << text.str()
       << ": "
       << (scene.time.is_explicit() ?
-            "explicit steps are too long, perhaps for nodes of little mass" :
+            "explicit steps are too long, perhaps for nodes of little mass (which Formulation = momentum or Grid/Method = GIMP spares)" :
             "the time integrator is unstable here, or points carry "
             "accelerations that the grid does not see");
     throw ComputationError(where.str());

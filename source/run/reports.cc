@@ -1,9 +1,11 @@
 #include <impm/balance/terms/loads.h>
+#include <impm/footprints/pieces.h>
 #include <impm/output/summary.h>
 #include <impm/run/simulation.h>
 #include <impm/solve/linear_solver_choice.h>
 
 #include <algorithm>
+#include <numeric>
 #include <sstream>
 
 // What a run says of itself.
@@ -145,8 +147,33 @@ namespace impm
 
   template <int dim>
   void
+  Simulation<dim>::watch_pieces()
+  {
+    if (grid.is_lagrangian)
+      return;
+    auto now         = count_pieces(points,
+                            problem->footprints,
+                            *problem->discretization,
+                            scene.bodies.size());
+    since_row.pieces = std::accumulate(now.begin(), now.end(), 0u);
+    for (unsigned int b = 0; b < pieces.size(); ++b)
+      if (now[b] > pieces[b])
+        {
+          std::ostringstream text;
+          text << "body '" << scene.bodies[b].name << "' has come apart: it is "
+               << "in " << now[b] << " pieces instead of " << pieces[b];
+          for (const auto &[name, value] : history.last_figures())
+            text << "; " << name << " = " << value << " before";
+          warn("pieces of " + scene.bodies[b].name, text.str());
+        }
+    pieces = std::move(now);
+  }
+
+  template <int dim>
+  void
   Simulation<dim>::write_row()
   {
+    watch_pieces();
     history.write(since_row);
     if (history.last_density().smallest < 1)
       {
@@ -225,6 +252,10 @@ namespace impm
   Simulation<2>::watch_faces();
   template void
   Simulation<3>::watch_faces();
+  template void
+  Simulation<2>::watch_pieces();
+  template void
+  Simulation<3>::watch_pieces();
   template void
   Simulation<2>::write_row();
   template void

@@ -33,6 +33,7 @@ namespace impm
     unsigned int splits = 0, merges = 0, grid_resets = 0;
     unsigned int unstable = 0; ///< steps from an equilibrium that is not stable
     unsigned int damped   = 0; ///< steps that end in none
+    unsigned int pieces   = 0; ///< of all bodies, if counted
     double       imbalance = 1; ///< cost of the busiest rank over the mean
     /** Since the start, gained where points were split or merged (J). */
     double resampling_kinetic_energy = 0, resampling_internal_energy = 0;
@@ -50,7 +51,7 @@ namespace impm
         &line_searches &step_cuts &projections &solver_fallbacks &noise_stops
           &held_cells &limited_boxes &active_cells &dofs &residual
             &external_work &internal_work &stabilization_work &splits &merges
-              &grid_resets &unstable &damped &resampling_kinetic_energy
+              &grid_resets &unstable &damped &pieces &resampling_kinetic_energy
                 &resampling_internal_energy &imbalance &wall_seconds;
     }
   };

@@ -150,6 +150,11 @@ namespace impm
     void
     report_instability(const Vector &mode);
 
+    /** Counts the pieces of the bodies, and tells when one has come apart.
+     * Collective. */
+    void
+    watch_pieces();
+
     /** Warns of prescribed faces that have lost their material. Collective. */
     void
     watch_faces();
@@ -246,6 +251,7 @@ namespace impm
     Console                   console;
     Warnings                  warnings;
     std::array<bool, 2 * dim> face_holds{}; ///< material, in the last step
+    std::vector<unsigned int> pieces;       ///< by body, at the last row
     dealii::Timer             wall;
     std::string               directory, scene_name, parameters;
     StepReport                report; ///< of the step that is being made

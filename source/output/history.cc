@@ -293,7 +293,8 @@ namespace impm
                              "number: they are too fast, or too much deformed");
     budget.update(all_energy(totals),
                   report.external_work + report.resampling_kinetic_energy +
-                    report.resampling_internal_energy);
+                    report.resampling_internal_energy,
+                  report.uncertain_work);
     drift               = may_drift ? deformation_drift(points) : 0.;
     const auto n_points = points.sorted.n_global();
     density             = points_per_cell(grid, points);

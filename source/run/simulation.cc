@@ -307,6 +307,7 @@ namespace impm
     report.external_work      = work.external;
     report.internal_work      = work.internal;
     report.stabilization_work = work.stabilization;
+    report.uncertain_work     = work.uncertain;
     history.take_figures(*problem, end_forces);
     watch_faces();
     report.damped = jump.is_on();

@@ -14,31 +14,22 @@ namespace impm
   Simulation<dim>::report_instability(const Vector &mode)
   {
     // Where the mode is largest, and along which axis.
-    struct
-    {
-      double value = -1;
-      int    rank;
-    } largest, best;
-    MPI_Comm_rank(communicator, &largest.rank);
-    unsigned int place = 0;
+    double                              largest = -1;
+    std::pair<Point<dim>, unsigned int> where;
     for (unsigned int i = 0; i < mode.locally_owned_size(); ++i)
-      if (std::abs(mode.local_element(i)) > largest.value * (1 + 1e-6))
+      if (const double value = std::abs(mode.local_element(i));
+          value > largest * (1 + 1e-6))
         {
-          largest.value = std::abs(mode.local_element(i));
-          place         = i;
+          largest = value;
+          where   = {problem->discretization->node_positions[i / dim], i % dim};
         }
-    const int error = MPI_Allreduce(
-      &largest, &best, 1, MPI_DOUBLE_INT, MPI_MAXLOC, communicator);
-    AssertThrowMPI(error);
+    const auto rank =
+      Utilities::MPI::min_max_avg(largest, communicator).max_index;
+    where = Utilities::MPI::broadcast(communicator, where, rank);
     std::ostringstream text;
     text << "the equilibrium at t = " << time << " s is not stable";
     for (const auto &[name, value] : history.last_figures())
       text << ", " << name << " = " << value;
-    const auto where = Utilities::MPI::broadcast(
-      communicator,
-      std::make_pair(problem->discretization->node_positions[place / dim],
-                     place % dim),
-      best.rank);
     text << ": it bifurcates, or loads have passed their limit, along a mode "
             "that moves most at "
          << where.first << " m in direction "

@@ -1,5 +1,7 @@
 #include <impm/run/work_done.h>
 
+#include <cmath>
+
 namespace impm
 {
   using namespace dealii;
@@ -46,7 +48,11 @@ namespace impm
           const double *sum  = &sums[3 * (dim * b + d)];
           double       &last = step.last_forces[b][d];
           if (sum[2] > 0)
-            step.external += 0.5 * (last - sum[0]) * sum[1] / sum[2];
+            {
+              const double half = 0.5 * (last - sum[0]) * sum[1] / sum[2];
+              step.external += half;
+              step.uncertain += std::abs(half);
+            }
           last = sum[0];
         }
     step.internal = Utilities::MPI::sum(problem.response.work(), comm);
@@ -62,6 +68,7 @@ namespace impm
     external += step.external;
     internal += step.internal;
     stabilization += step.stabilization;
+    uncertain += step.uncertain;
     last_forces = step.last_forces;
   }
 

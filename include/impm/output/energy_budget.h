@@ -23,17 +23,19 @@ namespace impm
       start = largest = energy;
     }
 
-    /** Takes the energy as it is now, and what the run was given so far. */
+    /** Takes the energy as it is now, and what the run was given so far, give
+     * or take something. */
     void
-    update(const double energy, const double given)
+    update(const double energy, const double given, const double uncertain)
     {
       gain         = energy - start - given;
+      certain_gain = gain - uncertain;
       of_steps     = 0;
       largest      = std::max({largest, energy, std::abs(given)});
-      largest_gain = std::max(largest_gain, relative(gain));
+      largest_gain = std::max(largest_gain, relative(certain_gain));
     }
 
-    /** A step that was made gained so much, as seen by the grid. */
+    /** A step that was made gained so much for certain, as seen by the grid. */
     void
     add_step(const double step_gain)
     {
@@ -52,7 +54,7 @@ namespace impm
     {
       const double scale = std::max(largest, energy);
       return tolerance > 0 && step_gain > 0.1 * tolerance * scale &&
-             gain + of_steps + step_gain > tolerance * scale;
+             certain_gain + of_steps + step_gain > tolerance * scale;
     }
 
     /** Over the largest energy so far. */
@@ -66,10 +68,11 @@ namespace impm
     void
     serialize(Archive &archive, const unsigned int /*version*/)
     {
-      archive &start &largest &gain &largest_gain &of_steps;
+      archive &start &largest &gain &certain_gain &largest_gain &of_steps;
     }
 
     double gain         = 0; ///< at the last update (J)
+    double certain_gain = 0; ///< likewise, whatever the work was
     double largest_gain = 0; ///< so far, relative
 
   private:

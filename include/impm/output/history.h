@@ -30,6 +30,7 @@ namespace impm
     double external_work      = 0; ///< since the start (J)
     double internal_work      = 0; ///< of the stresses, as seen by the grid (J)
     double stabilization_work = 0; ///< of ghost penalty and holding (J)
+    double uncertain_work     = 0; ///< see WorkDone (J)
     unsigned int splits = 0, merges = 0, grid_resets = 0;
     unsigned int unstable = 0; ///< steps from an equilibrium that is not stable
     unsigned int damped   = 0; ///< steps that end in none
@@ -48,9 +49,9 @@ namespace impm
     serialize(Archive &archive, const unsigned int /*version*/)
     {
       archive &step &time &dt &newton_iterations &linear_iterations
-        &line_searches &step_cuts &projections &solver_fallbacks &noise_stops
-          &held_cells &limited_boxes &active_cells &dofs &residual
-            &external_work &internal_work &stabilization_work &splits &merges
+        &line_searches &step_cuts &projections &solver_fallbacks &noise_stops &
+          held_cells &limited_boxes &active_cells &dofs &residual &external_work
+            &internal_work &stabilization_work &uncertain_work &splits &merges
               &grid_resets &unstable &damped &pieces &resampling_kinetic_energy
                 &resampling_internal_energy &imbalance &wall_seconds;
     }

@@ -67,9 +67,9 @@ namespace impm
     attempt(double dt);
 
     /**
-     * What a step that is solved gains of energy by itself, as the grid sees it
-     * (J); 0 if it is not known: with laws without a potential, in explicit
-     * and in quasi-static steps. Collective.
+     * What a step that is solved gains of energy by itself for certain, as the
+     * grid sees it (J); 0 if it is not known: with laws without a potential, in
+     * explicit and in quasi-static steps. Collective.
      */
     double
     energy_gain_of_step() const;

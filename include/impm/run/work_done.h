@@ -26,6 +26,8 @@ namespace impm
     struct Step
     {
       double external = 0, internal = 0, stabilization = 0;
+      /** Between the trapezoidal rule and the forces at one end (J). */
+      double                              uncertain = 0;
       std::vector<dealii::Tensor<1, dim>> last_forces;
     };
 
@@ -43,12 +45,13 @@ namespace impm
     void
     serialize(Archive &archive, const unsigned int /*version*/)
     {
-      archive &external &internal &stabilization &last_forces;
+      archive &external &internal &stabilization &uncertain &last_forces;
     }
 
     double external      = 0; ///< (J)
     double internal      = 0; ///< (J)
     double stabilization = 0; ///< by ghost penalty and holding (J)
+    double uncertain     = 0; ///< of the external work (J)
 
   private:
     /** By carrier: the forces at the end of the last step (N). */

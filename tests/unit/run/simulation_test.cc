@@ -157,8 +157,9 @@ TEST(SimulationMpi, AFaceThatLosesItsBodyWarnsOnce)
   };
   EXPECT_TRUE(warnings_of("true").empty());
   const auto warnings = warnings_of("false");
-  ASSERT_EQ(warnings.size(), 2u) << warnings;
-  // what the file gives away, then what happens
+  // what the file gives away, then what happens, to plain points as well
+  ASSERT_EQ(warnings.size(), 3u) << warnings;
+  EXPECT_NE(warnings[2].get<std::string>().find("drifted"), std::string::npos);
   const std::string read = warnings[0], happens = warnings[1];
   EXPECT_NE(read.find("'top'"), std::string::npos) << read;
   EXPECT_NE(read.find("Moves the grid"), std::string::npos) << read;

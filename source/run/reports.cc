@@ -184,7 +184,7 @@ namespace impm
                 "or begin with more";
         warn("few points", text.str());
       }
-    if (history.last_drift() > 0.15)
+    if (history.last_drift() > 0.2)
       {
         std::ostringstream text;
         text << "the deformation of the points has drifted from how they lie, "

@@ -313,7 +313,7 @@ namespace impm
     report.damped = jump.is_on();
     commit();
     control.accept(!jump.is_on());
-    jump.end_step(off_grid.in_cells);
+    jump.end_step(off_grid.in_cells, control.step_size() >= scene.time.step);
     report.time         = time;
     report.wall_seconds = wall_seconds();
     total.append(report);

@@ -39,18 +39,22 @@ namespace impm
       return factor <= most && n_steps < too_many;
     }
 
-    /** After a step that was made, with a motion in cells. */
+    /** After a step that was made, with a motion in cells; the next one may be
+     * as long as any, or not yet. */
     void
-    end_step(const double in_cells)
+    end_step(const double in_cells, const bool is_long)
     {
       mode = Vector();
-      if (!is_on())
-        return;
-      ++n_steps;
-      if (in_cells < 0.5)
-        factor /= in_cells < 0.1 ? 8 : 2;
-      if (factor < 0.5 * first)
-        *this = Jump();
+      if (is_on())
+        {
+          ++n_steps;
+          if (in_cells < 0.5)
+            factor /= in_cells < 0.1 ? 8 : 2;
+          if (factor < 0.5 * first)
+            factor = 0;
+        }
+      else if (is_long)
+        n_steps = 0;
     }
 
     template <class Archive>
@@ -67,8 +71,9 @@ namespace impm
   private:
     static constexpr double first = 1e-7, most = 100;
 
-    double       factor  = 0; ///< see StepDamping
-    unsigned int n_steps = 0; ///< of this jump
+    double factor = 0; ///< see StepDamping
+    /** Of this jump, and of those before it without a long step between. */
+    unsigned int n_steps = 0;
   };
 } // namespace impm
 

@@ -15,7 +15,7 @@ namespace impm
   Simulation<dim>::energy_gain_of_step() const
   {
     const auto &spec = scene.time;
-    if (!spec.has_inertia() || spec.is_explicit() ||
+    if (!spec.has_inertia() || integrator->is_explicit() ||
         spec.momentum_formulation ||
         std::any_of(scene.bodies.begin(),
                     scene.bodies.end(),
@@ -80,8 +80,9 @@ namespace impm
     where
       << "at t = " << time << " s, step " << total.step << ": " << text.str()
       << ": "
-      << (scene.time.is_explicit() ?
-            "explicit steps are too long, perhaps for nodes of little mass (which Formulation = momentum or Grid/Method = GIMP spares)" :
+      << (integrator->is_explicit() ?
+            "explicit steps are too long, perhaps for nodes of little mass (which "
+            "Formulation = momentum or Grid/Method = GIMP spares)" :
             "the time integrator is unstable here, or points carry "
             "accelerations that the grid does not see");
     throw ComputationError(where.str());

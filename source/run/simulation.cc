@@ -231,9 +231,15 @@ namespace impm
     if (!motion.forbidden.empty())
       return motion.forbidden;
     off_grid.in_cells = motion.in_cells;
-    result            = problem->end_motion(result.increment);
-    end_forces        = problem->end_forces(result.increment);
-    step_work         = work.of_step(*problem, result.increment, end_forces);
+    // Swapped: a vector that is assigned to one of an earlier grid keeps the
+    // ghosts of that one if as many values are owned.
+    auto end = problem->end_motion(result.increment);
+    result.increment.swap(end.increment);
+    result.velocity.swap(end.velocity);
+    result.acceleration.swap(end.acceleration);
+    auto forces = problem->end_forces(result.increment);
+    end_forces.swap(forces);
+    step_work = work.of_step(*problem, result.increment, end_forces);
     return check_energy();
   }
 

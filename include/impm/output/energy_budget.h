@@ -32,7 +32,6 @@ namespace impm
       certain_gain = gain - uncertain;
       of_steps     = 0;
       largest      = std::max({largest, energy, std::abs(given)});
-      largest_gain = std::max(largest_gain, relative(certain_gain));
     }
 
     /** A step that was made gained so much for certain, as seen by the grid. */
@@ -68,12 +67,11 @@ namespace impm
     void
     serialize(Archive &archive, const unsigned int /*version*/)
     {
-      archive &start &largest &gain &certain_gain &largest_gain &of_steps;
+      archive &start &largest &gain &certain_gain &of_steps;
     }
 
     double gain         = 0; ///< at the last update (J)
     double certain_gain = 0; ///< likewise, whatever the work was
-    double largest_gain = 0; ///< so far, relative
 
   private:
     double start = 0, largest = 0;

@@ -3,8 +3,6 @@
 
 #include <impm/balance/step_problem.h>
 
-#include <algorithm>
-
 namespace impm
 {
   /**
@@ -66,10 +64,9 @@ namespace impm
 
     Vector mode; ///< of the attempt before, in this step, or empty
 
-    static constexpr unsigned int too_many = 500;
-
   private:
-    static constexpr double first = 1e-7, most = 100;
+    static constexpr double       first = 1e-7, most = 100;
+    static constexpr unsigned int too_many = 500;
 
     double factor = 0; ///< see StepDamping
     /** Of this jump, and of those before it without a long step between. */

@@ -1,5 +1,7 @@
 #include <impm/input/sections/solver.h>
 
+#include <algorithm>
+
 namespace impm
 {
   namespace
@@ -190,6 +192,14 @@ namespace impm
     const auto section = top.subsection("Solver");
     if (time.is_explicit())
       return; // nothing is solved
+    if (time.integrator == Integrator::energy_momentum &&
+        std::any_of(bodies.begin(), bodies.end(), [](const auto &body) {
+          return body.material &&
+                 body.material->form() == Material::Form::linearized;
+        }))
+      top.subsection("Time").refuse("Integrator",
+                                    "which needs finite strains, not a "
+                                    "'linear' law: allowed are the others");
     add_newton(section, solver);
     add_linear_solver(section, solver);
     check_symmetry(section, solver, time, bodies);

@@ -70,3 +70,19 @@ TEST(Rotation, EnergyFromNothingCutsSteps)
   EXPECT_GT(largest(columns.at("step_cuts")), 0);
   EXPECT_LT(largest(columns.at("energy_gain")), 0.03 * energy);
 }
+
+
+// Grids come and go under a body that turns; on several ranks they may own as
+// many values as the one before, and yet have other ghosts.
+TEST(RotationMpi, AdaptiveGridKeepsMomentum)
+{
+  const auto columns = turn("GIMP",
+                            {"Grid/Cells=16, 16",
+                             "Grid/Adaptation/Criteria=surface",
+                             "Grid/Adaptation/surface/Kind=free surface",
+                             "Grid/Adaptation/Highest level=1",
+                             "Time/Largest number of steps=40"});
+  for (const std::string name : {"momentum_x", "momentum_y"})
+    for (const double momentum : columns.at(name))
+      EXPECT_NEAR(momentum, 0., 1e-10);
+}

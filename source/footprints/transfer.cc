@@ -282,6 +282,8 @@ namespace impm
                     fields + points.offset_history);
         if (move)
           points.set_vector(p, points.offset_velocity, velocities[p]);
+        if (points.offset_rate > 0)
+          points.set_vector(p, points.offset_rate, increments[p] / problem.dt);
         ++p;
       }
     if (move && time.transfer == TransferKind::apic)

@@ -52,6 +52,7 @@ namespace impm
     const Vector              &support)
     : is_constrained(dim * discretization.node_positions.size(), false)
     , carrier(is_constrained.size(), no_carrier)
+    , wall(carrier)
     , increment(is_constrained.size())
     , faces(faces)
     , grid(grid)
@@ -72,9 +73,11 @@ namespace impm
         const bool used   = support.local_element(i) > 0;
         const bool held   = carriers.local_element(i) > 0;
         is_constrained[i] = hangs || !used || held;
+        if (held)
+          wall[i] = static_cast<unsigned int>(carriers.local_element(i)) - 1;
         if (hangs || !used || !held)
           continue;
-        carrier[i]   = static_cast<unsigned int>(carriers.local_element(i)) - 1;
+        carrier[i]   = wall[i];
         increment[i] = prescribed(i, time, dt);
       }
   }

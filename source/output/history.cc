@@ -21,6 +21,7 @@ namespace impm
   {
     const auto before = *this;
     *this             = next;
+    step_error        = std::max(step_error, before.step_error);
     newton_iterations += before.newton_iterations;
     linear_iterations += before.linear_iterations;
     line_searches += before.line_searches;
@@ -103,7 +104,8 @@ namespace impm
                   {"unstable_equilibria", report.unstable},
                   {"damped_steps", report.damped},
                   {"deformation_drift", drift},
-                  {"pieces", report.pieces}});
+                  {"pieces", report.pieces},
+                  {"step_error", report.step_error}});
       return row;
     }
 

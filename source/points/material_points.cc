@@ -1,5 +1,8 @@
 #include <deal.II/base/mpi.h>
 
+#include <deal.II/grid/filtered_iterator.h>
+#include <deal.II/grid/grid_tools.h>
+
 #include <impm/balance/terms/loads.h>
 #include <impm/base/exceptions.h>
 #include <impm/points/material_points.h>
@@ -12,6 +15,20 @@
 namespace impm
 {
   using namespace dealii;
+
+  namespace
+  {
+    template <int dim>
+    bool
+    is_inside(const BackgroundGrid<dim> &grid, const Point<dim> &place)
+    {
+      for (unsigned int d = 0; d < dim; ++d)
+        if (place[d] < grid.face_of_vertices(2 * d) ||
+            place[d] > grid.face_of_vertices(2 * d + 1))
+          return false;
+      return true;
+    }
+  } // namespace
 
   template <int dim>
   SortedParticles<dim>::SortedParticles(const BackgroundGrid<dim> &grid,
@@ -62,6 +79,8 @@ namespace impm
     if (grid.is_moved())
       return;
     const auto before = particles.n_global_particles();
+    lost.clear();
+    send_far();
     particles.sort_particles_into_subdomains_and_cells();
     const auto missing = before - particles.n_global_particles();
     if (missing == 0)
@@ -75,6 +94,57 @@ namespace impm
     throw ComputationError(
       std::to_string(missing) +
       " points have left the domain or were lost between ranks: " + named);
+  }
+
+  template <int dim>
+  void
+  SortedParticles<dim>::send_far()
+  {
+    if (Utilities::MPI::n_mpi_processes(grid.communicator) == 1)
+      return;
+    // Beyond neighbours that may be half as large.
+    const auto is_far = [&](const auto &particle) {
+      const auto cell  = particle->get_surrounding_cell();
+      const auto place = particle->get_location();
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          const double lower  = cell->vertex(0)[d];
+          const double extent = cell_extent(cell, d);
+          if (place[d] < lower - 0.49 * extent ||
+              place[d] > lower + 1.49 * extent)
+            return is_inside(grid, place);
+        }
+      return false;
+    };
+    std::vector<typename Particles::ParticleHandler<dim>::particle_iterator>
+                                       far;
+    std::vector<Point<dim>>            places;
+    std::vector<std::vector<double>>   fields;
+    std::vector<types::particle_index> numbers;
+    for (auto particle = particles.begin(); particle != particles.end();
+         ++particle)
+      if (is_far(particle))
+        {
+          const auto values = particle->get_properties();
+          far.push_back(particle);
+          places.push_back(particle->get_location());
+          fields.emplace_back(values.begin(), values.end());
+          numbers.push_back(particle->get_id());
+        }
+    if (Utilities::MPI::max<unsigned int>(far.size(), grid.communicator) == 0)
+      return;
+    particles.remove_particles(far);
+    particles.insert_global_particles(
+      places,
+      GridTools::exchange_local_bounding_boxes(
+        GridTools::compute_mesh_predicate_bounding_box(
+          grid.triangulation,
+          std::function<bool(
+            const typename Triangulation<dim>::active_cell_iterator &)>(
+            IteratorFilters::LocallyOwnedCell())),
+        grid.communicator),
+      fields,
+      numbers);
   }
 
   template <int dim>
@@ -104,6 +174,7 @@ namespace impm
     , offset_deformation(layout.offset("deformation_gradient"))
     , offset_history(layout.size() - history.size())
     , offset_velocity(layout.find("velocity").value_or(0))
+    , offset_rate(layout.find("displacement_rate").value_or(0))
     , offset_acceleration(layout.find("acceleration").value_or(0))
     , offset_affine(layout.find("velocity_gradient_x").value_or(0))
     , offset_stress(layout.find("stress").value_or(0))

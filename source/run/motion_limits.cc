@@ -1,3 +1,4 @@
+#include <impm/run/flight.h>
 #include <impm/run/motion_limits.h>
 
 #include <limits>
@@ -34,6 +35,33 @@ namespace impm
            << " would " << what;
       return text.str();
     }
+
+    /** Largest component of the ways of points, in extents of their cells, on
+     * any rank. `way` makes it of the number and place of a point. */
+    template <int dim, typename Way>
+    double
+    largest_in_cells(const MaterialPoints<dim> &points, const Way &way)
+    {
+      double                                            largest = 0;
+      typename Triangulation<dim>::active_cell_iterator cell;
+      std::array<double, dim>                           extents{};
+      unsigned int                                      p = 0;
+      for (const auto &particle : points.sorted.particles)
+        {
+          // Points come in the order of cells.
+          const auto here = particle.get_surrounding_cell();
+          if (p == 0 || here != cell)
+            {
+              cell = here;
+              for (unsigned int d = 0; d < dim; ++d)
+                extents[d] = cell_extent(cell, d);
+            }
+          const Tensor<1, dim> of_point = way(p++, particle.get_location());
+          for (unsigned int d = 0; d < dim; ++d)
+            largest = std::max(largest, std::abs(of_point[d]) / extents[d]);
+        }
+      return Utilities::MPI::max(largest, points.communicator);
+    }
   } // namespace
 
   template <int dim>
@@ -42,8 +70,10 @@ namespace impm
                       const std::vector<Tensor<1, dim>> &increments,
                       const BackgroundGrid<dim>         &grid,
                       const MaterialPoints<dim>         &points,
+                      const RigidBodies<dim>            &rigid,
+                      const Faces<dim>                  &faces,
                       const GridPolicy<dim>             &policy,
-                      const double                       largest_in_cells)
+                      const double                       longest_in_cells)
   {
     const double infinite = std::numeric_limits<double>::infinity();
     // Material that has not reached a face yet does not feel it: a long step
@@ -63,45 +93,17 @@ namespace impm
         stretch[f]          = (end[f] - placed) / (placed - fixed[f]);
       }
 
-    const bool                  moved = grid.is_moved() && !grid.is_lagrangian;
-    std::vector<Tensor<1, dim>> before;
-    if (moved)
-      problem.footprints.interpolate(grid.nodal_state().displacement, before);
-    GridMotion                                        motion;
-    double                                            largest = 0;
-    typename Triangulation<dim>::active_cell_iterator cell;
-    std::array<double, dim>                           extents{};
-    unsigned int                                      p = 0;
+    GridMotion   motion;
+    unsigned int p = 0;
     for (const auto &particle : points.sorted.particles)
       {
-        const auto &x    = particle.get_location();
-        const auto &step = increments[p];
-        if (motion.forbidden.empty())
-          motion.forbidden =
-            forbidden<dim>(particle, x + step, end, points.layout.geometry);
-        if (!grid.is_lagrangian)
-          {
-            // Points come in the order of cells.
-            const auto here = particle.get_surrounding_cell();
-            if (p == 0 || here != cell)
-              {
-                cell = here;
-                for (unsigned int d = 0; d < dim; ++d)
-                  extents[d] = cell_extent(cell, d);
-              }
-            const auto ago = moved ? before[p] : Tensor<1, dim>();
-            for (unsigned int d = 0; d < dim; ++d)
-              {
-                const double start = x[d] - ago[d];
-                const double of_grid =
-                  stretch[2 * d] * (start - fixed[2 * d]) +
-                  stretch[2 * d + 1] * (start - fixed[2 * d + 1]);
-                largest =
-                  std::max(largest,
-                           std::abs(ago[d] + step[d] - of_grid) / extents[d]);
-              }
-          }
-        ++p;
+        motion.forbidden =
+          forbidden<dim>(particle,
+                         particle.get_location() + increments[p++],
+                         end,
+                         points.layout.geometry);
+        if (!motion.forbidden.empty())
+          break;
       }
     for (const auto &text :
          Utilities::MPI::all_gather(points.communicator, motion.forbidden))
@@ -110,10 +112,42 @@ namespace impm
           motion.forbidden = text;
           return motion;
         }
-    motion.in_cells = Utilities::MPI::max(largest, points.communicator);
-    // Nor does a point feel material that it has not reached; and between ranks
-    // it is found only where the neighbour can see it.
-    if (motion.in_cells > 0.95 * largest_in_cells)
+    if (grid.is_lagrangian)
+      return motion;
+
+    std::vector<Tensor<1, dim>> before;
+    if (grid.is_moved())
+      problem.footprints.interpolate(grid.nodal_state().displacement, before);
+    motion.in_cells = largest_in_cells(
+      points, [&](const unsigned int point, const Point<dim> &place) {
+        const auto ago = before.empty() ? Tensor<1, dim>() : before[point];
+        auto       way = ago + increments[point];
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            const double start = place[d] - ago[d];
+            way[d] -= stretch[2 * d] * (start - fixed[2 * d]) +
+                      stretch[2 * d + 1] * (start - fixed[2 * d + 1]);
+          }
+        return way;
+      });
+    const double longest = 0.95 * longest_in_cells;
+    if (motion.in_cells > longest && !grid.keeps_motion)
+      {
+        const Flight<dim> flight(points,
+                                 increments,
+                                 grid,
+                                 faces,
+                                 rigid,
+                                 problem.time,
+                                 problem.time + problem.dt);
+        motion.in_cells = largest_in_cells(
+          points, [&](const unsigned int point, const Point<dim> &place) {
+            return increments[point] -
+                   flight.rigid_increment(points.body(point), place);
+          });
+      }
+    // A point does not feel material that it has not reached.
+    if (motion.in_cells > longest)
       motion.forbidden = "a point moves across a whole cell";
     return motion;
   }

@@ -109,7 +109,8 @@ namespace impm
       return;
     // Of the highest mode of a grid of full cells, eq. 2.4.1.
     const double limit = integrator->stable_step(2 / cfl_unit());
-    const double dt    = scene.time.largest_step * step_unit();
+    const double dt =
+      std::min(scene.time.largest_step * step_unit(), scene.time.end);
     if (dt <= 1.001 * limit)
       return;
     std::ostringstream text;

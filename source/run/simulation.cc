@@ -7,6 +7,7 @@
 #include <impm/run/run_directory.h>
 #include <impm/run/signals.h>
 #include <impm/run/simulation.h>
+#include <impm/run/step_error.h>
 #include <impm/scene/scene.h>
 #include <impm/scene/thin_parts.h>
 
@@ -72,8 +73,8 @@ namespace impm
     , points(seed_points(scene, *policy, grid))
     , rigid(scene.bodies, scene.geometry, grid)
     , balance(grid, points)
-    , control(scene.time)
     , integrator(make_time_integrator(scene.time))
+    , control(scene.time, integrator->order())
     , builder(scene.grid)
     , pictures(scene.output, points, rigid, grid)
     , history(scene, points, rigid, grid)
@@ -178,6 +179,7 @@ namespace impm
   Simulation<dim>::attempt(const double dt)
   {
     report.dt = dt;
+    figures   = StepFigures();
     {
       TimerOutput::Scope scope(timer, "set-up of the step");
       problem.reset();
@@ -218,19 +220,16 @@ namespace impm
     if (!solution.converged)
       return solution.failure;
     problem->footprints.interpolate(result.increment, increments);
-    const auto motion =
-      motion_through_grid(*problem,
-                          increments,
-                          grid,
-                          points,
-                          *policy,
-                          // Of one step, as ever.
-                          is_off_grid() ?
-                            scene.grid.reset_motion :
-                            std::max(1., scene.grid.reset_motion));
+    // Of one step, as ever, unless the grid has moved.
+    const double most   = is_off_grid() ? scene.grid.reset_motion :
+                                          std::max(1., scene.grid.reset_motion);
+    const auto   motion = motion_through_grid(
+      *problem, increments, grid, points, rigid, scene.faces, *policy, most);
     if (!motion.forbidden.empty())
       return motion.forbidden;
-    off_grid.in_cells = motion.in_cells;
+    off_grid.in_cells  = motion.in_cells;
+    figures.iterations = solution.iterations;
+    figures.in_cells   = is_off_grid() ? 0. : motion.in_cells / (0.95 * most);
     // Swapped: a vector that is assigned to one of an earlier grid keeps the
     // ghosts of that one if as many values are owned.
     auto end = problem->end_motion(result.increment);
@@ -240,6 +239,17 @@ namespace impm
     auto forces = problem->end_forces(result.increment);
     end_forces.swap(forces);
     step_work = work.of_step(*problem, result.increment, end_forces);
+    // Of damped steps nothing is known.
+    if (scene.time.step_control == StepControlKind::error && !jump.is_on())
+      {
+        figures.error = control.relative(
+          estimate_step_error(*problem, result, increments, points));
+        if (!grid.is_lagrangian)
+          figures.in_cells =
+            std::max(figures.in_cells,
+                     way_over_allowed(
+                       *problem, increments, grid, points, rigid, scene.faces));
+      }
     return check_energy();
   }
 
@@ -272,12 +282,20 @@ namespace impm
             continue;
           }
         // Nodes must not pass into a rigid body: the first one lands on it.
-        const double part =
-          failed ? 0.5 :
-                   rigid.first_touch(result.increment,
-                                     problem->constraints.is_constrained,
-                                     time,
-                                     time + dt);
+        double       part   = failed ?
+                                0.5 :
+                                rigid.first_touch(result.increment,
+                                          problem->constraints.is_constrained,
+                                          time,
+                                          time + dt);
+        std::string  why    = failed ? failure : "a node reaches a rigid body";
+        const double wanted = failed ? 1 : control.part_for(figures);
+        const bool   is_too_long = wanted < part;
+        if (is_too_long)
+          {
+            part = wanted;
+            why  = control.why_too_long(figures);
+          }
         if (part == 1)
           break;
         if (failed && can_jump() &&
@@ -289,9 +307,8 @@ namespace impm
           }
         ++report.step_cuts;
         console.detail("  step cut at t = " + std::to_string(time) +
-                       ", dt = " + std::to_string(dt) + ": " +
-                       (failed ? failure : "a node reaches a rigid body"));
-        dt = control.cut(part, failed);
+                       ", dt = " + std::to_string(dt) + ": " + why);
+        dt = control.cut(part, failed || is_too_long);
         if (failed && control.is_too_short() && !can_jump())
           {
             std::ostringstream where;
@@ -316,9 +333,17 @@ namespace impm
     report.uncertain_work     = work.uncertain;
     history.take_figures(*problem, end_forces);
     watch_faces();
-    report.damped = jump.is_on();
+    report.damped     = jump.is_on();
+    report.step_error = figures.error;
+    if (control.is_wrong(figures))
+      warn("step error",
+           "steps as short as they may be lose more than the 'Error tolerance' "
+           "of " +
+             Utilities::to_string(scene.time.error_tolerance) +
+             " by their length: a motion that sets in at once, or a 'Smallest "
+             "time step' that is too long");
     commit();
-    control.accept(!jump.is_on());
+    control.accept(figures, !jump.is_on());
     jump.end_step(off_grid.in_cells, control.step_size() >= scene.time.step);
     report.time         = time;
     report.wall_seconds = wall_seconds();

@@ -112,6 +112,8 @@ namespace impm
     const auto &time = scene.time;
     if (time.has_inertia())
       layout.add("velocity", Kind::vector);
+    else if (time.step_control == StepControlKind::error)
+      layout.add("displacement_rate", Kind::vector);
     if (time.keeps_acceleration)
       layout.add("acceleration", Kind::vector);
     // Explicit forces need nothing else of the laws; averages of volume change

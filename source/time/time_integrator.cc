@@ -1,5 +1,6 @@
 #include <impm/time/time_integrator.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace impm
@@ -46,6 +47,25 @@ namespace impm
                  Vector &) const override
       {
         end_velocity.equ(1 / dt, u);
+      }
+
+      unsigned int
+      order() const override
+      {
+        return 1;
+      }
+
+      /** Of dt v_end against dt (v + v_end) / 2. */
+      void
+      displacement_error(const double  dt,
+                         const Vector &velocity,
+                         const Vector &,
+                         const Vector &end_velocity,
+                         const Vector &,
+                         Vector &error) const override
+      {
+        error.equ(dt / 2, end_velocity);
+        error.add(-dt / 2, velocity);
       }
     };
 
@@ -113,6 +133,27 @@ namespace impm
         end_velocity.add(dt * gamma, end_acceleration);
       }
 
+      unsigned int
+      order() const override
+      {
+        return gamma > 0.5 ? 1 : 2;
+      }
+
+      /** Zienkiewicz & Xie (1991), with what the velocity loses if it does. */
+      void
+      displacement_error(const double dt,
+                         const Vector &,
+                         const Vector &acceleration,
+                         const Vector &,
+                         const Vector &end_acceleration,
+                         Vector       &error) const override
+      {
+        const double factor =
+          dt * dt * (std::max(std::abs(beta - 1. / 6), 1. / 12) + gamma - 0.5);
+        error.equ(factor, end_acceleration);
+        error.add(-factor, acceleration);
+      }
+
     protected:
       const double beta, gamma;
     };
@@ -167,6 +208,13 @@ namespace impm
       {
         known.equ((1 - alpha_m) / (beta * dt), velocity);
         known.add((1 - alpha_m) * (1 / (2 * beta) - 1) - alpha_m, acceleration);
+      }
+
+      /** Whatever gamma is. */
+      unsigned int
+      order() const override
+      {
+        return 2;
       }
 
     private:

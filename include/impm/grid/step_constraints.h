@@ -84,6 +84,9 @@ namespace impm
     /** What holds a local element, or no_carrier. */
     std::vector<unsigned int> carrier;
 
+    /** What would hold it, had it material. */
+    std::vector<unsigned int> wall;
+
     /** What is prescribed of a local element in the step (m), else zero. */
     std::vector<double> increment;
 

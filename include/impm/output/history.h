@@ -35,7 +35,8 @@ namespace impm
     unsigned int unstable = 0; ///< steps from an equilibrium that is not stable
     unsigned int damped   = 0; ///< steps that end in none
     unsigned int pieces   = 0; ///< of all bodies, if counted
-    double       imbalance = 1; ///< cost of the busiest rank over the mean
+    double       step_error = 0; ///< over the allowed one, if it is estimated
+    double       imbalance  = 1; ///< cost of the busiest rank over the mean
     /** Since the start, gained where points were split or merged (J). */
     double resampling_kinetic_energy = 0, resampling_internal_energy = 0;
     double wall_seconds = 0; ///< since the start
@@ -51,9 +52,9 @@ namespace impm
       archive &step &time &dt &newton_iterations &linear_iterations
         &line_searches &step_cuts &projections &solver_fallbacks &noise_stops &
           held_cells &limited_boxes &active_cells &dofs &residual &external_work
-            &internal_work &stabilization_work &uncertain_work &splits &merges
-              &grid_resets &unstable &damped &pieces &resampling_kinetic_energy
-                &resampling_internal_energy &imbalance &wall_seconds;
+            &internal_work &stabilization_work &uncertain_work &splits &merges &
+              grid_resets &unstable &damped &pieces &resampling_kinetic_energy &
+                resampling_internal_energy &step_error &imbalance &wall_seconds;
     }
   };
 

@@ -33,9 +33,10 @@ namespace impm
            const std::function<void(const Seed<dim> &, double *)> &fill = {});
 
     /**
-     * Finds the cell of every particle after points or grid have moved.
-     * Throws ComputationError that names a particle that has left the domain
-     * or could not be found. Collective.
+     * Finds the cell of every particle after points or grid have moved, be it
+     * on another rank that has no cell near the one where it was. Throws
+     * ComputationError that names a particle that has left the domain or could
+     * not be found. Collective.
      */
     void
     sort();
@@ -55,8 +56,13 @@ namespace impm
     dealii::Particles::ParticleHandler<dim> particles;
 
   private:
+    /** Takes those that have gone further than neighbours see to the ranks that
+     * have their cells. Collective. */
+    void
+    send_far();
+
     const BackgroundGrid<dim> &grid;
-    std::string                lost;
+    std::string                lost; ///< the last, for people
   };
 
   /**
@@ -126,6 +132,13 @@ namespace impm
     material(const unsigned int point) const
     {
       return *materials[body(point)];
+    }
+
+    /** Rigid ones, which have no such points, included. */
+    unsigned int
+    n_bodies() const
+    {
+      return names.size();
     }
 
     /** Whether all materials of the points have something. */
@@ -215,10 +228,11 @@ namespace impm
     const PointLayout    layout;
     SortedParticles<dim> sorted;
     const unsigned int   offset_deformation, offset_history;
-    // 0 where the points have none of it. The affine velocity is a matrix by
+    // 0 where the points have none of it. The rate is that of the step before,
+    // where there are no velocities. The affine velocity is a matrix by
     // rows, d v_i / d x_j; the stress is what the force at t_n comes from, tau.
-    const unsigned int offset_velocity, offset_acceleration, offset_affine,
-      offset_stress, offset_initial_position;
+    const unsigned int offset_velocity, offset_rate, offset_acceleration,
+      offset_affine, offset_stress, offset_initial_position;
     /** Within the history: offsets count from offset_history. */
     const PointLayout history_layout;
     const MPI_Comm    communicator;

@@ -14,19 +14,23 @@ namespace impm
   {
     /** Why the increment must not be used; empty if it may. */
     std::string forbidden;
-    /** Largest since points were sorted into cells, in extents of a cell. */
+    /** Largest since points were sorted into cells, in extents of a cell; of
+     * bodies that fly freely and far, with respect to their rigid motion. */
     double in_cells = 0;
   };
 
-  /** Of the points' increments in a step that has converged. Collective. */
+  /** Of the points' increments in a step that has converged; none but those
+   * that meet nothing may go as far as `longest_in_cells`. Collective. */
   template <int dim>
   GridMotion
   motion_through_grid(const StepProblem<dim>                    &problem,
                       const std::vector<dealii::Tensor<1, dim>> &increments,
                       const BackgroundGrid<dim>                 &grid,
                       const MaterialPoints<dim>                 &points,
+                      const RigidBodies<dim>                    &rigid,
+                      const Faces<dim>                          &faces,
                       const GridPolicy<dim>                     &policy,
-                      double largest_in_cells);
+                      double longest_in_cells);
 } // namespace impm
 
 #endif

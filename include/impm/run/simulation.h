@@ -214,9 +214,9 @@ namespace impm
     double       best_imbalance = 1; ///< that could be reached the last time
     unsigned int adapted_step   = 0; ///< the last that began by it
     double       time           = 0;
-    StepControl  control;
 
     const std::unique_ptr<TimeIntegrator> integrator;
+    StepControl                           control;
     FootprintBuilder<dim>                 builder;
     WorkCounts                            counts;
     std::unique_ptr<StepProblem<dim>>     problem; ///< of this step
@@ -242,6 +242,7 @@ namespace impm
     typename WorkDone<dim>::Step step_work; ///< of the step that is solved
     Vector       end_forces;    ///< of the step that is solved, see StepProblem
     double       step_gain = 0; ///< likewise, see energy_gain_of_step()
+    StepFigures  figures;       ///< likewise
     Jump         jump;          ///< that is on its way, if any
     PointChanges resampled;     ///< since the start
 

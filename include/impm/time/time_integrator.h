@@ -102,6 +102,21 @@ namespace impm
                Vector       &end_velocity,
                Vector       &end_acceleration) const = 0;
 
+    /** What the displacement of a step loses goes with this power of its
+     * length, and one more. */
+    virtual unsigned int
+    order() const = 0;
+
+    /** Displacement (m) of the step less what it should be, as its leading
+     * term. */
+    virtual void
+    displacement_error(double        dt,
+                       const Vector &velocity,
+                       const Vector &acceleration,
+                       const Vector &end_velocity,
+                       const Vector &end_acceleration,
+                       Vector       &error) const = 0;
+
   protected:
     double mass  = 1; ///< mass_factor dt^2
     double force = 1; ///< force_factor

@@ -111,23 +111,51 @@ namespace impm
                     time.step,
                     {"0.01", above_zero},
                     "Of the first step (s).");
+      section.add("Step control",
+                  time.step_control,
+                  {{"fixed", StepControlKind::fixed},
+                   {"iterations", StepControlKind::iterations},
+                   {"error", StepControlKind::error}},
+                  "How long the next step is: as given, with its growth, but "
+                  "for steps that fail; as long as Newton's method takes the "
+                  "iterations wanted; as long as the error that the time "
+                  "integrator makes is what is allowed.");
+      const bool is_fixed = time.step_control == StepControlKind::fixed;
+      if (!is_fixed && time.is_explicit())
+        section.refuse("Step control",
+                       "allowed with explicit steps, whose length is that in "
+                       "which they are stable, is 'fixed'");
+      if (time.step_control == StepControlKind::iterations)
+        section.add("Wanted iterations",
+                    time.wanted_iterations,
+                    {"6", 2, 50},
+                    "Of Newton's method in a step.");
+      if (time.step_control == StepControlKind::error)
+        section.add("Error tolerance",
+                    time.error_tolerance,
+                    {"0.01", 1e-12, 1},
+                    "Of the displacements, over the way that the points go, as "
+                    "means of squares: what all steps together may lose by "
+                    "their length.");
       section.add("Growth",
                   time.growth,
-                  {"1", 1, 2},
-                  "Factor from one time step to the next.");
+                  {is_fixed ? "1" : "1.5", 1, 2},
+                  "Factor from one time step to the next, or the largest one "
+                  "where steps are controlled.");
       std::optional<double> largest_step;
       section.add("Largest time step",
                   largest_step,
                   "Where growth ends (s, or CFL number); empty: the first "
-                  "step's.");
-      time.largest_step = largest_step.value_or(time.step);
+                  "step's, or none where steps are controlled.");
+      time.largest_step = largest_step.value_or(
+        is_fixed ? time.step : std::numeric_limits<double>::infinity());
       const std::string first =
         time.cfl_number > 0 ? "CFL number" : "Time step";
       if (time.largest_step < time.step)
         section.refuse("Largest time step",
                        "allowed is at least '" + first +
                          "' = " + section.get(first));
-      if (time.growth > 1 && time.largest_step == time.step)
+      if (is_fixed && time.growth > 1 && time.largest_step == time.step)
         section.refuse("Growth",
                        "which does nothing without a 'Largest time step' above "
                        "'" +

@@ -50,6 +50,35 @@ TEST(DisksMpi, FlyCollideAndNeverGainEnergy)
 }
 
 
+// Steps as long as their error allows: longer in flight, short in the impact,
+// and none that carries the disks into each other.
+TEST(DisksMpi, StepsByTheirError)
+{
+  for (const auto &[integrator, loss] :
+       {std::pair("theta", 0.1), std::pair("Newmark", 0.03)})
+    {
+      SCOPED_TRACE(integrator);
+      const auto  columns = fly({std::string("Time/Integrator=") + integrator,
+                                 "Time/Step control=error",
+                                 "Time/Error tolerance=0.003"});
+      const auto &time    = columns.at("time");
+      const auto &dt      = columns.at("dt");
+      EXPECT_LT(time.size(), 320);
+      EXPECT_NEAR(columns.at("kinetic_energy").back() / energy, 1, loss);
+      double in_flight = 0, shortest = 1;
+      for (unsigned int i = 0; i < time.size(); ++i)
+        {
+          if (time[i] < 60)
+            in_flight = std::max(in_flight, dt[i]);
+          else if (time[i] < 80)
+            shortest = std::min(shortest, dt[i]);
+          EXPECT_LE(columns.at("step_error")[i], 1.5);
+        }
+      EXPECT_GT(in_flight, 4 * shortest);
+    }
+}
+
+
 // A node with a sliver of mass at a crossing (t = 12.5) is beyond the stable
 // step of the velocity formulation, whose energy grows until the run ends, not
 // of that of momentum, nor where boxes enter.

@@ -237,6 +237,19 @@ TEST(RestartMpi, GridThatFollowsAFace)
                                  "Solver/Newton tolerance=1e-12"});
 }
 
+// Whose length depends on the step before.
+TEST(RestartMpi, StepsThatAreControlled)
+{
+  const Overrides by_error = {"Time/Step control=error",
+                              "Time/Error tolerance=0.003"};
+  expect_restarts<2>("plane strain", pressed + top_moves_the_grid + by_error);
+  expect_restarts<2>("plane strain", flies + with_inertia + by_error);
+  expect_restarts<2>("plane strain",
+                     pressed + top_moves_the_grid +
+                       Overrides{"Time/Step control=iterations",
+                                 "Time/Wanted iterations=3"});
+}
+
 // Cells that come and go, points that split and merge.
 TEST(RestartMpi, AdaptedGrid)
 {

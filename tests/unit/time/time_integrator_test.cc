@@ -66,6 +66,23 @@ namespace
     return result;
   }
 
+  // What a step of the oscillator loses by its length, and what the integrator
+  // knows of it.
+  std::pair<double, double>
+  error_and_estimate(const TimeSpec &spec, const double dt)
+  {
+    const auto   integrator = make_time_integrator(spec);
+    impm::Vector u(1), v(1), a(1), known(1), end_v(1), end_a(1), error(1);
+    const double x = 1, w = integrator->force_factor();
+    v[0] = 0.7;
+    a[0] = -x;
+    integrator->known_acceleration(dt, v, a, known);
+    u[0] = (known[0] - x) / (integrator->mass_factor(dt) + w);
+    integrator->end_motion(dt, u, v, a, end_v, end_a);
+    integrator->displacement_error(dt, v, a, end_v, end_a, error);
+    return {x + u[0] - (x * std::cos(dt) + v[0] * std::sin(dt)), error[0]};
+  }
+
   double
   largest_amplitude(const TimeSpec &spec, const double dt)
   {
@@ -112,6 +129,22 @@ namespace
     return Utilities::MPI::max(worst, MPI_COMM_WORLD);
   }
 } // namespace
+
+
+TEST(TimeIntegrator, KnowsWhatAStepLoses)
+{
+  for (const auto &spec :
+       {theta(1), newmark(0.25, 0.5, false), newmark(0.25, 0.5, true)})
+    for (const double dt : {0.02, 0.01})
+      {
+        const auto [error, estimate] = error_and_estimate(spec, dt);
+        EXPECT_NEAR(estimate / error, 1, 2 * dt);
+        const auto half = error_and_estimate(spec, dt / 2).first;
+        EXPECT_NEAR(error / half,
+                    std::pow(2, make_time_integrator(spec)->order() + 1),
+                    10 * dt);
+      }
+}
 
 
 TEST(TimeIntegrator, OscillationsGrowBeyondTheLimitOnly)

@@ -26,6 +26,14 @@ namespace impm
     apic
   };
 
+  /** What says how long the next step is. */
+  enum class StepControlKind
+  {
+    fixed,
+    iterations, ///< of Newton's method
+    error       ///< of the time integrator
+  };
+
   struct TimeSpec
   {
     Integrator integrator;
@@ -37,7 +45,10 @@ namespace impm
     bool         momentum_formulation = false;
     double       cfl_number           = 0; ///< 0: `step` is given
     TransferKind transfer             = TransferKind::flip;
+    StepControlKind step_control = StepControlKind::fixed;
     double       end, step, growth, largest_step, smallest_step;
+    double       error_tolerance   = 0; ///< over the way that points go
+    unsigned int wanted_iterations = 0; ///< a step
     double       energy_tolerance = 0; ///< 0: none
     unsigned int largest_number_of_steps;
 

@@ -1,0 +1,50 @@
+#include <deal.II/base/numbers.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "run_file.h"
+
+using namespace impm;
+
+namespace
+{
+  // The pressure of a footing at each step over Prandtl's limit
+  // (prm/extreme/footing.prm).
+  std::vector<double>
+  press(const std::vector<std::string> &overrides)
+  {
+    auto pressure = run_file("extreme/footing", overrides).at("pressure");
+    for (double &value : pressure)
+      value /= 2 + dealii::numbers::PI;
+    return pressure;
+  }
+} // namespace
+
+
+// On a grid that is fine at the edge the limit load is Prandtl's within 2 %:
+// what is too much is half a cell at the edge, 0.8 %, and the cells of the fan.
+TEST(LockingMpi, AFootingHasALimit)
+{
+  const auto pressure = press({});
+  EXPECT_NEAR(pressure.back(), 1.013, 0.002);
+  const auto last = pressure.end() - 8;
+  EXPECT_LT(*std::max_element(last, pressure.end()) -
+              *std::min_element(last, pressure.end()),
+            1e-3);
+}
+
+
+// The half cell at the edge on an even grid of four across half the footing;
+// without F-bar there is no limit.
+TEST(Locking, WithoutMeanVolumeThereIsNoLimit)
+{
+  const std::vector<std::string> coarse = {"Grid/Method=MPM",
+                                           "Grid/Adaptation/Highest level=2",
+                                           "Grid/Adaptation/Lowest level=2"};
+  EXPECT_NEAR(press(coarse).back(), 1.092, 0.005);
+  auto plain = coarse;
+  plain.push_back("Materials/clay/F-bar=false");
+  EXPECT_GT(press(plain).back(), 1.8);
+}

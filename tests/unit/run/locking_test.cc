@@ -48,3 +48,18 @@ TEST(Locking, WithoutMeanVolumeThereIsNoLimit)
   plain.push_back("Materials/clay/F-bar=false");
   EXPECT_GT(press(plain).back(), 1.8);
 }
+
+
+// Cook's membrane at nu = 0.4999, on squares that do not fit it
+// (prm/extreme/cook_points.prm): 6.9 mm.
+TEST(LockingMpi, CooksMembraneByPoints)
+{
+  EXPECT_NEAR(run_file("extreme/cook_points").at("rise").back() / 6.9,
+              1.,
+              0.01);
+  EXPECT_LT(run_file("extreme/cook_points", {"Materials/rubber/F-bar=false"})
+                .at("rise")
+                .back() /
+              6.9,
+            0.85);
+}

@@ -3,6 +3,7 @@
 
 #include <impm/app/mpi_start.h>
 #include <impm/base/exceptions.h>
+#include <impm/input/parameter_messages.h>
 #include <impm/run/signals.h>
 #include <impm/run/simulation.h>
 #include <impm/study/finer_run.h>
@@ -106,7 +107,8 @@ main(int argc, char **argv)
     }
   catch (const InputError &error)
     {
-      errors << "impm_dealii: bad input: " << error.what() << std::endl;
+      errors << "impm_dealii: bad input: " << abridged(error.what())
+             << std::endl;
       return 1;
     }
   catch (const Interruption &interruption)

@@ -16,6 +16,7 @@
 
 namespace impm
 {
+  using boost::algorithm::istarts_with;
   using dealii::ParameterHandler;
   using Path = std::vector<std::string>;
 
@@ -55,6 +56,14 @@ namespace impm
           const std::string &name,
           const bool         strict)
     {
+      // deal.II would read the other file, even one that names itself for ever.
+      const auto lines = split(text, '\n');
+      for (unsigned int i = 0; i < lines.size(); ++i)
+        if (istarts_with(lines[i], "include"))
+          throw InputError("",
+                           place_of(name, i + 1) + ": found '" + lines[i] +
+                             "', allowed is a file that is whole, or "
+                             "'Study/Scene' for a study of another one");
       std::istringstream in(text);
       try
         {
@@ -82,6 +91,14 @@ namespace impm
              split_path(path).back() == "Points from";
     }
 
+    /** Also false for a directory, which opens as a file. */
+    bool
+    has_text(const std::string &file_name)
+    {
+      return std::ifstream(file_name).peek() !=
+             std::ifstream::traits_type::eof();
+    }
+
     std::set<Path>
     declared_entries(const ParameterHandler &prm)
     {
@@ -99,9 +116,10 @@ namespace impm
     const std::function<void(ParameterHandler &, const Chosen &)> &declare)
     : file_name(file_name)
   {
-    if (!std::ifstream(file_name))
+    if (!has_text(file_name))
       throw InputError("",
-                       "cannot read the parameter file '" + file_name + "'");
+                       "cannot read the parameter file '" + file_name +
+                         "', or it is empty");
     sources.push_back({file_name, content_of(file_name)});
     read_scene_of_study();
     for (const auto &override : overrides)
@@ -150,10 +168,10 @@ namespace impm
     };
     const auto name =
       (std::filesystem::path(file_name).parent_path() / scene).string();
-    if (!std::ifstream(name))
+    if (!has_text(name))
       refuse(
         "allowed is the path of a parameter file from here; cannot read '" +
-        name + "'");
+        name + "', or it is empty");
     const std::string text = content_of(name);
     for (const auto &line : lines_of(text))
       if (line.path[0] == "Study")

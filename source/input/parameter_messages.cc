@@ -200,6 +200,15 @@ namespace impm
   }
 
   std::string
+  abridged(std::string message)
+  {
+    const std::size_t most = 4000, end = 1500;
+    if (message.size() > most)
+      message.replace(most - end, message.size() - most, " (cut here) ");
+    return message;
+  }
+
+  std::string
   describe_error(const dealii::ExceptionBase    &exception,
                  const std::string              &text,
                  const dealii::ParameterHandler &prm)
@@ -207,7 +216,7 @@ namespace impm
     std::ostringstream info;
     exception.print_info(info);
     const auto message =
-      std::regex_replace(trim(info.str()), std::regex("\\s+"), " ");
+      std::regex_replace(abridged(trim(info.str())), std::regex("\\s+"), " ");
 
     std::smatch match; // the number of the line, the file, and what is wrong
     const auto  says = [&](const std::string &what) {

@@ -27,6 +27,11 @@ namespace impm
   std::string
   place_of(const std::string &file, unsigned int line);
 
+  /** Without its middle if it is so long that nobody would read it, and that
+   * std::regex, which calls itself for every letter, would run out of stack. */
+  std::string
+  abridged(std::string message);
+
   /**
    * What ParameterHandler says of a text that it cannot read, in the words of
    * this program: file, line, entry, what was found, what is allowed.

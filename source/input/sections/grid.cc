@@ -77,6 +77,16 @@ namespace impm
                            "allowed is a corner above 'Lower corner' in every "
                            "direction");
         }
+      double n_unknowns = dim;
+      for (const unsigned int n : grid.cells)
+        n_unknowns *= n + 1.;
+      const auto most =
+        std::numeric_limits<dealii::types::global_dof_index>::max();
+      if (n_unknowns > most)
+        section.refuse("Cells",
+                       "allowed are so few that the unknowns have numbers up "
+                       "to " +
+                         std::to_string(most));
     }
   } // namespace
 

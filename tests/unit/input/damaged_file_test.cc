@@ -1,0 +1,92 @@
+#include <impm/base/exceptions.h>
+#include <impm/input/parameter_messages.h>
+
+#include <gtest/gtest.h>
+
+#include "scene_fixture.h"
+
+using namespace dealii;
+using namespace impm;
+
+namespace
+{
+  const std::string plane = block_scene("plane strain");
+
+  /** With one part of it in place of another. */
+  std::string
+  plane_with(const std::string &found, const std::string &other)
+  {
+    std::string text = plane;
+    return text.replace(text.find(found), found.size(), other);
+  }
+
+  /** Reading must fail with a message that has the words, of a length to read.
+   */
+  void
+  expect_refusal(const std::string &text, const std::vector<std::string> &words)
+  {
+    try
+      {
+        scene_from<2>(text);
+        ADD_FAILURE() << "is taken";
+      }
+    catch (const InputError &error)
+      {
+        const std::string message = error.what();
+        EXPECT_LT(message.size(), 5000u);
+        for (const auto &word : words)
+          EXPECT_NE(message.find(word), std::string::npos)
+            << "found '" << message << "', expected '" << word << "'";
+      }
+  }
+} // namespace
+
+
+// std::regex calls itself for every letter that it looks at.
+TEST(DamagedFile, LongLines)
+{
+  const std::string many(200000, 'x');
+  expect_refusal(plane_with("Density         = 1", "Density = 1" + many),
+                 {"line 19", "'Density'", "allowed is a number"});
+  expect_refusal(plane_with("Density         = 1", "Density" + many + " = 1"),
+                 {"line 19", "found entry 'Densityxxx", "allowed here are"});
+  expect_refusal(plane_with("subsection Bodies", "subsection Bodies" + many),
+                 {"line 24", "found subsection 'Bodiesxxx"});
+  EXPECT_EQ(abridged("short"), "short");
+}
+
+
+TEST(DamagedFile, IncludesOfOtherFiles)
+{
+  for (const std::string word : {"include", "INCLUDE", "  include\t"})
+    expect_refusal(plane + word + " /dev/null\n", {"line 42", "allowed"});
+}
+
+
+TEST(DamagedFile, NothingToRead)
+{
+  expect_refusal("", {"cannot read", "empty"});
+  for (const std::string name : {"/tmp", "/tmp/no_such_file.prm"})
+    EXPECT_THROW(ParameterFile(name, {}, declare_scene), InputError);
+}
+
+
+// The numbers of the unknowns would start again from zero.
+TEST(DamagedFile, MoreCellsThanCanBeCounted)
+{
+  if (sizeof(types::global_dof_index) > 4)
+    GTEST_SKIP() << "deal.II counts further";
+  expect_refusal(plane_with("4, 4", "65536, 65536"), {"'65536, 65536'"});
+  expect_refusal(plane_with("4, 4", "2147483647, 2"), {"'2147483647, 2'"});
+}
+
+
+// Every one of the cells on a face would be looked at.
+TEST(DamagedFile, ManyCellsUnderAMap)
+{
+  const auto scene = scene_from<2>(plane_with("4, 4", "2, 500000000"),
+                                   {"Grid/Method=Lagrangian",
+                                    "Grid/Map=x; 2*y",
+                                    "Boundary conditions/left/Type=slip"});
+  EXPECT_EQ(scene.grid.cells[1], 500000000u);
+}

@@ -242,9 +242,33 @@ namespace impm
                    "are " + std::to_string(n));
     }
 
+    const std::string allowed_vtu =
+      "are VTU files without appended data: arrays with their data inside, "
+      "ascii or binary";
+
+    /** Elements of VTU files lie few levels deep in each other. Boost's parser
+     * calls itself for each level, and would run out of stack. */
+    void
+    check_depth(const std::string &file_name)
+    {
+      std::ifstream in(file_name);
+      unsigned int  depth = 0, line = 1;
+      for (char last = ' ', next; in.get(next); last = next)
+        {
+          line += next == '\n';
+          if ((last == '<' && next == '/') || (last == '/' && next == '>'))
+            depth -= depth > 0;
+          else if (last == '<' && next != '?' && next != '!' && ++depth > 100)
+            throw flaw(file_name + ", line " + std::to_string(line),
+                       "an element inside a hundred others",
+                       allowed_vtu);
+        }
+    }
+
     Content
     read_vtu(const std::string &file_name)
     {
+      check_depth(file_name);
       Tree tree;
       try
         {
@@ -255,8 +279,7 @@ namespace impm
           // Appended data may be no XML at all.
           throw flaw(file_name + ", line " + std::to_string(error.line()),
                      "no XML (" + error.message() + ")",
-                     "are VTU files without appended data: arrays with their "
-                     "data inside, ascii or binary");
+                     allowed_vtu);
         }
       const auto grid = tree.get_child_optional("VTKFile.UnstructuredGrid");
       if (!grid)

@@ -408,6 +408,20 @@ TEST(PointFile, VtuErrorsOfStructure)
                   {"line 3: ", "appended data", "ascii or binary"});
 }
 
+// Boost's parser, which calls itself for each level, would run out of stack.
+TEST(PointFile, VtuElementsInsideEachOther)
+{
+  std::string text = "<VTKFile>\n";
+  for (unsigned int i = 0; i < 200000; ++i)
+    text += "<Piece>";
+  expect_error<2>(text, ".vtu", {"line 2: ", "inside", "ascii or binary"});
+
+  std::string pieces = vtu_piece(1, data_array(coordinates, "1 2 0"));
+  for (unsigned int i = 0; i < 1000; ++i)
+    pieces += "<Piece NumberOfPoints=\"0\" NumberOfCells=\"0\"/>\n";
+  EXPECT_EQ(read<2>(vtu_file(pieces), ".vtu").positions.size(), 1u);
+}
+
 TEST(PointFile, VtuErrorsOfArrays)
 {
   const auto expect = [](const std::string              &points,

@@ -50,20 +50,36 @@ namespace impm
       return text;
     }
 
+    /** Refuses what ParameterHandler would take, and should not. */
+    void
+    check_lines(const std::string &text, const std::string &name)
+    {
+      const auto lines = split(text, '\n');
+      for (unsigned int i = 0; i < lines.size(); ++i)
+        {
+          const auto refuse = [&](const std::string &allowed) {
+            throw InputError("",
+                             place_of(name, i + 1) + ": found '" + lines[i] +
+                               "', allowed " + allowed);
+          };
+          // It would read the other file, even one that names itself for ever.
+          if (istarts_with(lines[i], "include"))
+            refuse("is a file that is whole, or 'Study/Scene' for a study of "
+                   "another one");
+          // It would find a number here, and fail to read it.
+          const auto words = split(lines[i].substr(0, lines[i].find('#')), '=');
+          if (words.size() == 2 && is_too_small(words[1]))
+            refuse("are 0 and numbers that are not as small");
+        }
+    }
+
     void
     parse(ParameterHandler  &prm,
           const std::string &text,
           const std::string &name,
           const bool         strict)
     {
-      // deal.II would read the other file, even one that names itself for ever.
-      const auto lines = split(text, '\n');
-      for (unsigned int i = 0; i < lines.size(); ++i)
-        if (istarts_with(lines[i], "include"))
-          throw InputError("",
-                           place_of(name, i + 1) + ": found '" + lines[i] +
-                             "', allowed is a file that is whole, or "
-                             "'Study/Scene' for a study of another one");
+      check_lines(text, name);
       std::istringstream in(text);
       try
         {

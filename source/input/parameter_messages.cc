@@ -1,3 +1,4 @@
+#include <deal.II/base/patterns.h>
 #include <deal.II/base/utilities.h>
 
 #include <impm/base/compat.h>
@@ -189,6 +190,28 @@ namespace impm
                          dealii::ParameterHandler::ShortPRM |
                            dealii::ParameterHandler::KeepDeclarationOrder);
     return text.str();
+  }
+
+  bool
+  is_too_small(const std::string &number)
+  {
+    if (!dealii::Patterns::Double().match(number))
+      return false;
+    try
+      {
+        dealii::Utilities::string_to_double(number);
+        return false;
+      }
+    catch (const dealii::ExceptionBase &)
+      {
+        return true;
+      }
+  }
+
+  bool
+  is_path(const std::string &name)
+  {
+    return name.find('/') != std::string::npos;
   }
 
   std::string

@@ -3,6 +3,7 @@
 
 #include <impm/base/exceptions.h>
 #include <impm/base/names.h>
+#include <impm/input/parameter_messages.h>
 #include <impm/scene/scene.h>
 #include <impm/study/study.h>
 
@@ -22,7 +23,7 @@ namespace impm
     numbers_in(const std::vector<std::string> &words)
     {
       for (const auto &word : words)
-        if (!Patterns::Double().match(word))
+        if (!Patterns::Double().match(word) || is_too_small(word))
           return {};
       return dealii::Utilities::string_to_double(words);
     }
@@ -201,7 +202,8 @@ namespace impm
                      "all.");
       }
     for (const auto &name : lists)
-      in_section(prm, name, [&]() { declare_list(prm); });
+      if (!is_path(name))
+        in_section(prm, name, [&]() { declare_list(prm); });
     prm.leave_subsection();
   }
 
@@ -219,6 +221,11 @@ namespace impm
       taken.insert({"status", "exit_code", "wall_seconds"});
       for (const auto &name : names)
         {
+          if (is_path(name))
+            throw InputError("Lists",
+                             "found '" + name +
+                               "', allowed are names without '/', which is "
+                               "for paths of entries");
           if (!taken.insert(name).second)
             throw InputError("Lists",
                              "found '" + name +
@@ -255,10 +262,15 @@ namespace impm
   std::vector<StudyRun>
   expand(const StudySpec &spec)
   {
-    unsigned int n_runs = 1;
+    double n_runs = 1;
     for (const auto &list : spec.lists)
       n_runs = spec.paired ? list.values.size() : n_runs * list.values.size();
-    std::vector<StudyRun> runs(n_runs);
+    if (n_runs > 1e5)
+      throw InputError(
+        "Study/Lists",
+        "found lists with more than 100000 combinations, allowed "
+        "are fewer");
+    std::vector<StudyRun> runs(static_cast<unsigned int>(n_runs));
     std::set<std::string> taken;
     for (unsigned int r = 0; r < n_runs; ++r)
       {

@@ -22,11 +22,12 @@ namespace
     ParameterFile file(name, overrides, declare_file);
     try
       {
-        read_study(file.handler());
         if (scene_dimension(file.handler()) == 3)
           read_scene<3>(file.handler(), name);
         else
           read_scene<2>(file.handler(), name);
+        if (!chosen_in(file.handler())("Study/Lists", "").empty())
+          expand(read_study(file.handler()));
       }
     catch (const InputError &error)
       {

@@ -23,6 +23,16 @@ namespace impm
   std::string
   text_of(const dealii::ParameterHandler &prm);
 
+  /** Whether a number has fewer digits than others since it is so small, which
+   * deal.II does not convert. */
+  bool
+  is_too_small(const std::string &number);
+
+  /** Whether a section cannot have this name, since '/' stands between names.
+   */
+  bool
+  is_path(const std::string &name);
+
   /** A line of a file, or an override ("--set ..."), which has but one. */
   std::string
   place_of(const std::string &file, unsigned int line);

@@ -1,5 +1,6 @@
 #include <deal.II/base/utilities.h>
 
+#include <impm/input/parameter_messages.h>
 #include <impm/input/sections/general.h>
 
 namespace impm
@@ -18,7 +19,8 @@ namespace impm
     for (const auto &pair : constants)
       {
         const auto parts = dealii::Utilities::split_string_list(pair, '=');
-        if (parts.size() == 2 && Patterns::Double().match(parts[1]))
+        if (parts.size() == 2 && Patterns::Double().match(parts[1]) &&
+            !is_too_small(parts[1]))
           general.constants[parts[0]] =
             dealii::Utilities::string_to_double(parts[1]);
         else

@@ -1,3 +1,4 @@
+#include <impm/input/parameter_messages.h>
 #include <impm/input/sections/section.h>
 
 #include <set>
@@ -61,8 +62,15 @@ namespace impm
     add(entry, names, documentation);
     std::set<std::string> taken;
     for (const auto &name : names)
-      if (!taken.insert(name).second)
+      if (is_path(name))
+        fail(entry,
+             "found '" + name +
+               "', allowed are names without '/', which is "
+               "for paths of entries");
+      else if (!taken.insert(name).second)
         fail(entry, "found '" + name + "' twice, the name is taken already");
+    names.erase(std::remove_if(names.begin(), names.end(), is_path),
+                names.end());
     return names;
   }
 } // namespace impm

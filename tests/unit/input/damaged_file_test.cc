@@ -90,3 +90,45 @@ TEST(DamagedFile, ManyCellsUnderAMap)
                                     "Boundary conditions/left/Type=slip"});
   EXPECT_EQ(scene.grid.cells[1], 500000000u);
 }
+
+
+// A section "" inside another one is none to ParameterHandler, and one far
+// inside others takes it long.
+TEST(DamagedFile, NamesThatArePaths)
+{
+  std::string deep = "a";
+  for (unsigned int i = 0; i < 20000; ++i)
+    deep += "/a";
+  for (const std::string &name : {std::string("/"), std::string("a//b"), deep})
+    for (const std::string list : {"Geometry/Shapes=box, ",
+                                   "Materials/Names=rubber, ",
+                                   "Bodies/Names=block, ",
+                                   "Loads/Tractions=",
+                                   "Output/Probes=",
+                                   "Reference/Names="})
+      try
+        {
+          scene_from<2>(plane, {list + name});
+          ADD_FAILURE() << "is taken";
+        }
+      catch (const InputError &error)
+        {
+          EXPECT_EQ(error.entry, list.substr(0, list.find('=')));
+          EXPECT_NE(std::string(error.what()).find("without '/'"),
+                    std::string::npos)
+            << error.what();
+        }
+}
+
+
+// Numbers with fewer digits than others, which deal.II does not convert.
+TEST(DamagedFile, NumbersThatAreTooSmall)
+{
+  expect_refusal(plane_with("Density         = 1", "Density = 1e-320 # small"),
+                 {"line 19", "1e-320", "allowed"});
+  expect_refusal(plane_with("Lower corner = 0, 0", "Lower corner = 1e-320, 0"),
+                 {"'1e-320, 0'", "allowed"});
+  for (const std::string override :
+       {"Time/Time step=-1e-320", "General/Constants=a = 1e-320"})
+    EXPECT_THROW(scene_from<2>(plane, {override}), InputError) << override;
+}

@@ -135,6 +135,7 @@ TEST(Study, ListsThatDoNotFit)
 {
   const std::string lists = "set Lists = grid\n";
   expect_blame("", "Study/Lists", "found ''");
+  expect_blame("set Lists = /\n", "Study/Lists", "without '/'");
   expect_blame("set Lists = status\n" + list_of("status", ""),
                "Study/Lists",
                "taken");
@@ -185,6 +186,26 @@ TEST(Study, ListsThatDoNotFit)
 
 
 // Errors C h^2, but for the one that failed: order 2 across it, too.
+// Their number would start again from zero, or take all memory.
+TEST(Study, MoreRunsThanCanBeListed)
+{
+  std::string names, lists;
+  for (const std::string name : {"a", "b", "c", "d", "e", "f"})
+    {
+      std::string values = "0";
+      for (unsigned int i = 1; i < 50; ++i)
+        values += " | " + std::to_string(i);
+      names += name + ", ";
+      lists += list_of(name,
+                       "set Entries = Loads/" + name +
+                         "\nset Values = " + values + "\n");
+    }
+  expect_blame("set Lists = " + names + "\n" + lists,
+               "Study/Lists",
+               "more than 100000");
+}
+
+
 TEST(Study, Orders)
 {
   const auto spec =

@@ -50,10 +50,15 @@ namespace impm
       return text;
     }
 
-    /** Refuses what ParameterHandler would take, and should not. */
+    /** Refuses what ParameterHandler would take, and should not, here and in
+     * the files that are included. `above` are those that include this one. */
     void
-    check_lines(const std::string &text, const std::string &name)
+    check_lines(const std::string    &text,
+                const std::string    &name,
+                std::set<std::string> above = {})
     {
+      std::error_code ignored;
+      above.insert(std::filesystem::weakly_canonical(name, ignored).string());
       const auto lines = split(text, '\n');
       for (unsigned int i = 0; i < lines.size(); ++i)
         {
@@ -62,10 +67,21 @@ namespace impm
                              place_of(name, i + 1) + ": found '" + lines[i] +
                                "', allowed " + allowed);
           };
-          // It would read the other file, even one that names itself for ever.
-          if (istarts_with(lines[i], "include"))
-            refuse("is a file that is whole, or 'Study/Scene' for a study of "
-                   "another one");
+          if (istarts_with(lines[i], "include ") ||
+              istarts_with(lines[i], "include\t"))
+            {
+              const std::string other =
+                dealii::Utilities::trim(lines[i].substr(8));
+              // It would read on for ever.
+              if (above.count(std::filesystem::weakly_canonical(other, ignored)
+                                .string()) > 0)
+                refuse("is a file that does not include this one");
+              std::ifstream      in(other);
+              std::ostringstream all;
+              if (std::filesystem::is_regular_file(other, ignored) &&
+                  all << in.rdbuf())
+                check_lines(all.str(), other, above);
+            }
           // It would find a number here, and fail to read it.
           const auto words = split(lines[i].substr(0, lines[i].find('#')), '=');
           if (words.size() == 2 && is_too_small(words[1]))

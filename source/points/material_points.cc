@@ -2,6 +2,7 @@
 
 #include <deal.II/grid/filtered_iterator.h>
 #include <deal.II/grid/grid_tools.h>
+#include <deal.II/grid/grid_tools_cache.h>
 
 #include <impm/balance/terms/loads.h>
 #include <impm/base/exceptions.h>
@@ -10,6 +11,7 @@
 #include <boost/lexical_cast.hpp>
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 namespace impm
@@ -117,34 +119,60 @@ namespace impm
       return false;
     };
     std::vector<typename Particles::ParticleHandler<dim>::particle_iterator>
-                                       far;
-    std::vector<Point<dim>>            places;
-    std::vector<std::vector<double>>   fields;
-    std::vector<types::particle_index> numbers;
+                                     far;
+    std::vector<Point<dim>>          places;
+    std::vector<std::vector<double>> records; // fields, and the number behind
     for (auto particle = particles.begin(); particle != particles.end();
          ++particle)
       if (is_far(particle))
         {
-          const auto values = particle->get_properties();
+          const auto fields = particle->get_properties();
           far.push_back(particle);
           places.push_back(particle->get_location());
-          fields.emplace_back(values.begin(), values.end());
-          numbers.push_back(particle->get_id());
+          records.emplace_back(fields.begin(), fields.end());
+          records.back().push_back(particle->get_id());
         }
     if (Utilities::MPI::max<unsigned int>(far.size(), grid.communicator) == 0)
       return;
     particles.remove_particles(far);
-    particles.insert_global_particles(
-      places,
-      GridTools::exchange_local_bounding_boxes(
-        GridTools::compute_mesh_predicate_bounding_box(
-          grid.triangulation,
-          std::function<bool(
-            const typename Triangulation<dim>::active_cell_iterator &)>(
-            IteratorFilters::LocallyOwnedCell())),
-        grid.communicator),
-      fields,
-      numbers);
+
+    // The ranks that have their cells ask for them by number in `places`.
+    const auto boxes = GridTools::exchange_local_bounding_boxes(
+      GridTools::compute_mesh_predicate_bounding_box(
+        grid.triangulation,
+        std::function<bool(
+          const typename Triangulation<dim>::active_cell_iterator &)>(
+          IteratorFilters::LocallyOwnedCell())),
+      grid.communicator);
+    const GridTools::Cache<dim> cache(grid.triangulation, *grid.mapping);
+    const auto [cells, unit_places, indices, new_places, owners] =
+      GridTools::distributed_compute_point_locations(cache, places, boxes);
+    std::map<unsigned int, std::vector<unsigned int>> wanted;
+    for (unsigned int c = 0; c < cells.size(); ++c)
+      for (unsigned int i = 0; i < indices[c].size(); ++i)
+        wanted[owners[c][i]].push_back(indices[c][i]);
+    std::map<unsigned int, std::vector<std::vector<double>>> answers;
+    for (const auto &[rank, some] :
+         Utilities::MPI::some_to_some(grid.communicator, wanted))
+      for (const unsigned int i : some)
+        answers[rank].push_back(records[i]);
+    const auto received =
+      Utilities::MPI::some_to_some(grid.communicator, answers);
+    std::map<unsigned int, unsigned int> next;
+    for (unsigned int c = 0; c < cells.size(); ++c)
+      for (unsigned int i = 0; i < indices[c].size(); ++i)
+        {
+          const unsigned int owner       = owners[c][i];
+          auto               fields      = received.at(owner)[next[owner]++];
+          const types::particle_index id = fields.back();
+          fields.pop_back();
+          particles.insert_particle(new_places[c][i],
+                                    unit_places[c][i],
+                                    id,
+                                    cells[c],
+                                    make_array_view(std::as_const(fields)));
+        }
+    particles.update_cached_numbers();
   }
 
   template <int dim>

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdio>
+#include <fstream>
+
 #include "scene_fixture.h"
 
 using namespace dealii;
@@ -56,10 +59,20 @@ TEST(DamagedFile, LongLines)
 }
 
 
-TEST(DamagedFile, IncludesOfOtherFiles)
+// Directly, or by another one.
+TEST(DamagedFile, FilesThatIncludeThemselves)
 {
-  for (const std::string word : {"include", "INCLUDE", "  include\t"})
-    expect_refusal(plane + word + " /dev/null\n", {"line 42", "allowed"});
+  const std::string one = testing::TempDir() + "impm_one.prm",
+                    two = testing::TempDir() + "impm_two.prm";
+  std::ofstream(one) << "include " << two << '\n';
+  std::ofstream(two) << "# nothing\n\tinclude  " << one << '\n';
+  expect_refusal(plane + "include " + one + "\n",
+                 {two + ", line 2", "does not include"});
+  std::ofstream(two) << "# nothing\n";
+  std::ofstream(two, std::ios::app) << "set Nothing = 1e-320\n";
+  expect_refusal(plane + "include " + one + "\n", {two + ", line 2"});
+  std::remove(one.c_str());
+  std::remove(two.c_str());
 }
 
 

@@ -6,6 +6,7 @@
 #include <deal.II/numerics/rtree.h>
 
 #include <impm/base/exceptions.h>
+#include <impm/scene/part_of_box.h>
 #include <impm/scene/point_file.h>
 #include <impm/scene/seeding.h>
 
@@ -50,13 +51,87 @@ namespace impm
         return QAnisotropic<3>(line(0), line(1), line(2));
     }
 
+    /** How many points of a body lie in each other one, by its number. */
+    using SharedPoints = std::vector<unsigned int>;
+
+    /** Calls an action with the number and the shape of every other body. */
+    template <int dim, typename Action>
+    void
+    for_others(const Bodies<dim>   &bodies,
+               const BodySpec<dim> &body,
+               const Action        &action)
+    {
+      for (unsigned int b = 0; b < bodies.size(); ++b)
+        if (bodies[b].name != body.name && bodies[b].shape)
+          action(b, *bodies[b].shape);
+    }
+
+    template <int dim>
+    void
+    count_shared(const Bodies<dim>   &bodies,
+                 const BodySpec<dim> &body,
+                 const Point<dim>    &position,
+                 SharedPoints        &shared)
+    {
+      for_others(bodies, body, [&](const unsigned int b, const auto &shape) {
+        shared[b] += shape.contains(position);
+      });
+    }
+
+    /** Whether the surface of a shape goes through a box, if it is nearly flat
+     * there. */
+    template <int dim>
+    bool
+    is_cut(const BoundingBox<dim> &box, const Shape<dim> &shape)
+    {
+      const bool is_inside = shape.contains(box.center());
+      for (const unsigned int v : GeometryInfo<dim>::vertex_indices())
+        if (shape.contains(box.vertex(v)) != is_inside)
+          return true;
+      return false;
+    }
+
+    /** Makes a seed stand for what of its box lies in the shape of its body;
+     * tells whether there is any. The centroid of that may well lie outside. */
+    template <int dim>
+    bool
+    cut_to_shape(const Bodies<dim>      &bodies,
+                 const BodySpec<dim>    &body,
+                 const BoundingBox<dim> &box,
+                 Seed<dim>              &seed,
+                 SharedPoints           &shared)
+    {
+      const auto &contains = body.shape->contains;
+      const auto  part     = find_part(contains, box);
+      if (part.share == 0)
+        return false;
+      for_others(bodies, body, [&](const unsigned int b, const auto &shape) {
+        const std::function<bool(const Point<dim> &)> in_both =
+          [&](const Point<dim> &place) {
+            return contains(place) && shape.contains(place);
+          };
+        shared[b] += find_part(in_both, box).share > 0;
+      });
+      if (part.share == 1)
+        return true;
+      seed.domain   = part.extents;
+      seed.position = part.centroid;
+      seed.volume *= part.share;
+      for (unsigned int d = 0; d < dim; ++d)
+        seed.unit_position[d] = (seed.position[d] - seed.cell->vertex(0)[d]) /
+                                cell_extent(seed.cell, d);
+      return true;
+    }
+
     /** The cells of a Lagrangian grid have to lie in the body as a whole. */
     template <int dim>
     void
     seed_shape(const GeometryKind         geometry,
+               const Bodies<dim>         &bodies,
                const BodySpec<dim>       &body,
                const BackgroundGrid<dim> &grid,
-               std::vector<Seed<dim>>    &seeds)
+               std::vector<Seed<dim>>    &seeds,
+               SharedPoints              &shared)
     {
       const auto pattern_of = [&](const unsigned int multiple) {
         auto numbers = body.points_per_cell;
@@ -103,9 +178,19 @@ namespace impm
                     seed.position = values.quadrature_point(q);
                     seed.volume   = values.JxW(q);
                   }
+                const BoundingBox<dim> box({seed.position - 0.5 * seed.domain,
+                                            seed.position + 0.5 * seed.domain});
+                if (body.cuts_boxes && is_cut(box, *body.shape))
+                  {
+                    if (!cut_to_shape(bodies, body, box, seed, shared))
+                      continue;
+                  }
+                else if (body.shape->contains(seed.position))
+                  count_shared(bodies, body, seed.position, shared);
+                else
+                  continue;
                 seed.volume *= circumference(geometry, seed.position);
-                if (body.shape->contains(seed.position))
-                  seeds.push_back(seed);
+                seeds.push_back(seed);
               }
             const unsigned int n_inside = seeds.size() - n_before;
             if (grid.is_lagrangian && n_inside > 0 && n_inside < pattern.size())
@@ -123,9 +208,11 @@ namespace impm
     template <int dim>
     void
     seed_file(const GeometryKind         geometry,
+              const Bodies<dim>         &bodies,
               const BodySpec<dim>       &body,
               const BackgroundGrid<dim> &grid,
-              std::vector<Seed<dim>>    &seeds)
+              std::vector<Seed<dim>>    &seeds,
+              SharedPoints              &shared)
     {
       const auto cloud = read_point_file<dim>(body.point_file);
       if (cloud.volumes.empty() && !body.rigid)
@@ -184,6 +271,7 @@ namespace impm
                      1. / dim);
           for (unsigned int d = 0; d < dim; ++d)
             seed.domain[d] = extent;
+          count_shared(bodies, body, seed.position, shared);
           seeds.push_back(seed);
         }
     }
@@ -198,10 +286,11 @@ namespace impm
             const bool                 may_be_empty)
   {
     std::vector<Seed<dim>> seeds;
+    SharedPoints           shared(bodies.size());
     if (body.shape)
-      seed_shape(geometry, body, grid, seeds);
+      seed_shape(geometry, bodies, body, grid, seeds, shared);
     else
-      seed_file(geometry, body, grid, seeds);
+      seed_file(geometry, bodies, body, grid, seeds, shared);
 
     const std::string entry =
       "Bodies/" + body.name + (body.shape ? "/Shape" : "/File");
@@ -211,20 +300,13 @@ namespace impm
                        "body '" + body.name +
                          "' has no points: it is empty, lies outside the grid "
                          "or is too thin for 'Points per cell'");
-    for (const auto &other : bodies)
-      {
-        if (other.name == body.name || !other.shape)
-          continue;
-        unsigned int shared = 0;
-        for (const auto &seed : seeds)
-          shared += other.shape->contains(seed.position);
-        shared = Utilities::MPI::sum(shared, grid.communicator);
-        if (shared > 0)
-          throw InputError(entry,
-                           "bodies '" + body.name + "' and '" + other.name +
-                             "' overlap: " + std::to_string(shared) +
-                             " points of the first lie in the second");
-      }
+    Utilities::MPI::sum(shared, grid.communicator, shared);
+    for (unsigned int b = 0; b < bodies.size(); ++b)
+      if (shared[b] > 0)
+        throw InputError(entry,
+                         "bodies '" + body.name + "' and '" + bodies[b].name +
+                           "' overlap: " + std::to_string(shared[b]) +
+                           " points of the first lie in the second");
     return seeds;
   }
 

@@ -105,6 +105,14 @@ namespace impm
             section.refuse("Shape",
                            "allowed for a rigid body on a Lagrangian grid, "
                            "whose nodes stick to it, are boxes");
+          if (!lagrangian && !body.rigid)
+            section.add("Surface",
+                        body.cuts_boxes,
+                        {{"points", false}, {"cut cells", true}},
+                        "What a point is where the surface of the shape cuts "
+                        "its part of a cell. Points: the whole part, if its "
+                        "centre lies inside. Cut cells: what of it lies "
+                        "inside, at the centroid of that.");
           if (body.shape)
             check_place(section, *body.shape, grid);
         }

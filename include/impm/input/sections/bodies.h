@@ -31,9 +31,11 @@ namespace impm
     std::shared_ptr<const Shape<dim>> shape;
     std::string                       point_file;
     std::array<unsigned int, dim>     points_per_cell; ///< by direction
-    PointAdaptation                   adaptation    = PointAdaptation::off;
-    double                            points_across = 2; ///< wished, of a cell
-    double                            merge_tolerance = 0;
+    /** Whether points at the surface stand for what is inside of it. */
+    bool            cuts_boxes      = false;
+    PointAdaptation adaptation      = PointAdaptation::off;
+    double          points_across   = 2; ///< wished, of a cell
+    double          merge_tolerance = 0;
 
     std::shared_ptr<const Material>              material; ///< if deformable
     std::shared_ptr<dealii::FunctionParser<dim>> velocity; ///< at the start

@@ -1,0 +1,186 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "expect_blame.h"
+
+using namespace dealii;
+using namespace impm;
+
+namespace
+{
+  const Overrides cut = {"Bodies/block/Surface=cut cells"};
+
+  /** The block as a ball, or what else a shape is. */
+  Overrides
+  ball(const std::string &centre, const std::string &radius)
+  {
+    return {"Geometry/Shapes=box, ball",
+            "Geometry/ball/Kind=ball",
+            "Geometry/ball/Centre=" + centre,
+            "Geometry/ball/Radius=" + radius,
+            "Bodies/block/Shape=ball"};
+  }
+
+  Overrides
+  function(const std::string &expression)
+  {
+    return {"Geometry/Shapes=box, function",
+            "Geometry/function/Kind=function",
+            "Geometry/function/Inside where negative=" + expression,
+            "Bodies/block/Shape=function"};
+  }
+
+  /** A hole in the block, and what fills it as another body. */
+  Overrides
+  inclusion(const std::string &radius)
+  {
+    return {"Geometry/Shapes=box, hole, ball, rest",
+            "Geometry/hole/Kind=ball",
+            "Geometry/hole/Centre=0.5, 0.5",
+            "Geometry/hole/Radius=0.3",
+            "Geometry/ball/Kind=ball",
+            "Geometry/ball/Centre=0.5, 0.5",
+            "Geometry/ball/Radius=" + radius,
+            "Geometry/rest/Kind=difference",
+            "Geometry/rest/Of=box, hole",
+            "Bodies/Names=block, ball",
+            "Bodies/block/Shape=rest",
+            "Bodies/ball/Shape=ball",
+            "Bodies/ball/Material=rubber",
+            "Bodies/ball/Surface=cut cells"};
+  }
+
+  /** Volume of all points, and its first moments. */
+  template <int dim>
+  std::pair<double, Point<dim>>
+  moments(const Model<dim> &model)
+  {
+    double         volume = 0;
+    Tensor<1, dim> first;
+    unsigned int   p = 0;
+    for (const auto &particle : model.points.sorted.particles)
+      {
+        const double V = model.points.initial_volume(p++);
+        volume += V;
+        first += V * particle.get_location();
+        EXPECT_TRUE(
+          particle.get_surrounding_cell()->bounding_box().point_inside(
+            particle.get_location(), 1e-12));
+        for (unsigned int d = 0; d < dim; ++d)
+          EXPECT_NEAR(particle.get_surrounding_cell()->vertex(0)[d] +
+                        particle.get_reference_location()[d] *
+                          particle.get_surrounding_cell()->extent_in_direction(
+                            d),
+                      particle.get_location()[d],
+                      1e-14);
+      }
+    volume = Utilities::MPI::sum(volume, MPI_COMM_WORLD);
+    first  = Utilities::MPI::sum(first, MPI_COMM_WORLD);
+    return {volume, Point<dim>(first / volume)};
+  }
+
+  template <int dim>
+  void
+  expect_moments(const std::string &kind,
+                 const Overrides   &shape,
+                 const double       volume,
+                 const Point<dim>  &centre,
+                 const double       tolerance)
+  {
+    for (const auto &overrides :
+         {Overrides{}, refined, Overrides{"Grid/Method=GIMP"}})
+      for (const std::string n : {"2", "3"})
+        {
+          const Model<dim> model(block_scene(kind),
+                                 cut + shape + overrides +
+                                   Overrides{"Bodies/block/Points per cell=" +
+                                             n});
+          const auto [found, place] = moments(model);
+          EXPECT_NEAR(found / volume, 1, tolerance) << kind;
+          EXPECT_NEAR(place.distance(centre), 0, tolerance) << kind;
+        }
+  }
+} // namespace
+
+
+TEST(SeedingMpi, CutCellsHaveTheVolumeOfTheShape)
+{
+  const double pi = numbers::PI;
+  expect_moments<2>(
+    "plane strain", ball("0.45, 0.5", "0.4"), pi * 0.16, {0.45, 0.5}, 2e-3);
+  expect_moments<2>("plane stress",
+                    function("(x - 0.45)^2 + (y - 0.5)^2 - 0.16"),
+                    pi * 0.16,
+                    {0.45, 0.5},
+                    2e-3);
+  // the ring of Pappus; its centroid is that by volume
+  expect_moments<2>("axisymmetric",
+                    ball("0.5, 0.5", "0.4"),
+                    2 * pi * 0.5 * pi * 0.16,
+                    {0.5 + 0.16 / 4 / 0.5, 0.5},
+                    4e-3);
+  expect_moments<3>("3D",
+                    ball("0.5, 0.45, 0.5", "0.4"),
+                    4 * pi / 3 * 0.064,
+                    {0.5, 0.45, 0.5},
+                    4e-3);
+}
+
+
+TEST(SeedingMpi, BoxesThatFitTheGridStayAsTheyAre)
+{
+  for (const std::string kind : {"plane strain", "axisymmetric"})
+    for (const auto &overrides :
+         {Overrides{},
+          refined,
+          Overrides{"Geometry/box/Lower corner=0.125, 0.25"}})
+      {
+        const Model<2> model(block_scene(kind), overrides),
+          other(block_scene(kind), cut + overrides);
+        ASSERT_EQ(model.points.size(), other.points.size());
+        auto particle = other.points.sorted.particles.begin();
+        for (const auto &one : model.points.sorted.particles)
+          {
+            EXPECT_EQ(one.get_location(), particle->get_location());
+            EXPECT_EQ(one.get_reference_location(),
+                      particle->get_reference_location());
+            ++particle;
+          }
+        for (unsigned int p = 0; p < model.points.size(); ++p)
+          EXPECT_EQ(model.points.initial_volume(p),
+                    other.points.initial_volume(p));
+      }
+}
+
+
+TEST(SeedingMpi, AnInterfaceIsNoOverlap)
+{
+  const Model<2> model(block_scene("plane strain"), cut + inclusion("0.3"));
+  EXPECT_NEAR(moments(model).first, 1, 1e-3);
+  // by a tenth of a point, too little for any of their places
+  expect_blame(block_scene("plane strain"),
+               cut + inclusion("0.3125"),
+               "Bodies/block/Shape",
+               {"overlap", "'ball'"});
+}
+
+
+TEST(Seeding, OnlyDeformableShapesHaveASurface)
+{
+  const auto refuse = [](const Overrides &overrides) {
+    try
+      {
+        scene_from<2>(block_scene("plane strain"), overrides + cut);
+        FAIL() << "is taken";
+      }
+    catch (const InputError &error)
+      {
+        EXPECT_NE(std::string(error.what() + error.entry).find("Surface"),
+                  std::string::npos)
+          << error.what();
+      }
+  };
+  refuse({"Grid/Method=Lagrangian"});
+  refuse({"Bodies/block/Kind=rigid"});
+}

@@ -181,7 +181,7 @@ namespace impm
                                const Discretization<dim> &discretization)
   {
     Footprints<dim>                              footprints;
-    std::vector<typename Footprints<dim>::Piece> pieces;
+    std::vector<typename Footprints<dim>::Piece> pieces, middles;
     pieces.reserve(points.size());
     const auto &layout        = points.layout;
     const auto  offset_domain = has_boxes ? layout.offset("initial_domain") : 0;
@@ -216,12 +216,17 @@ namespace impm
               keeps_motion ?
                 points.vector(p, offset_half) :
                 half_extents(points, p, offset_domain, boxes_stretch);
-            Point<dim> lower = x - half, upper = x + half;
-            bool       inside = true, limited = false;
+            Point<dim>     lower = x - half, upper = x + half;
+            Tensor<1, dim> middle = half; // half of what is symmetric
+            bool           inside = true, limited = false, at_face = false;
             for (unsigned int d = 0; d < dim; ++d)
               {
                 lower[d] = std::max(lower[d], grid.face_of_vertices(2 * d));
                 upper[d] = std::min(upper[d], grid.face_of_vertices(2 * d + 1));
+                middle[d] =
+                  std::min({half[d], x[d] - lower[d], upper[d] - x[d]});
+                // Round-off is no cut.
+                at_face = at_face || middle[d] < (1 - 1e-9) * half[d];
                 // Other ranks see no further than one cell.
                 const double slack = 1e-9 * reach[d];
                 const double below = start[d] - reach[d],
@@ -242,6 +247,18 @@ namespace impm
                 sum += cut(other, discretization, p, lower, upper, pieces);
             for (unsigned int i = first; i < pieces.size(); ++i)
               pieces[i].weight /= sum;
+            if (at_face)
+              {
+                const unsigned int begin = middles.size();
+                double             total = 0;
+                for (const auto &other : cells)
+                  total += cut(
+                    other, discretization, p, x - middle, x + middle, middles);
+                for (unsigned int i = begin; i < middles.size(); ++i)
+                  middles[i].weight /= total;
+                if (middles.size() == begin)
+                  middles.push_back({p, cell, 1., unit});
+              }
           }
         // A box without extent, too, is a point.
         if (pieces.size() == first)
@@ -251,6 +268,11 @@ namespace impm
         ++p;
       }
     footprints.build(pieces, p, discretization, grid.is_lagrangian);
+    if (!middles.empty())
+      {
+        footprints.middles = std::make_shared<Footprints<dim>>();
+        footprints.middles->build(middles, p, discretization, false);
+      }
     return footprints;
   }
 

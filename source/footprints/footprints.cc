@@ -384,6 +384,21 @@ namespace impm
 
   template <int dim>
   void
+  Footprints<dim>::move_points(const Vector                &increment,
+                               std::vector<Tensor<1, dim>> &of_points) const
+  {
+    interpolate(increment, of_points);
+    if (!middles)
+      return;
+    std::vector<Tensor<1, dim>> of_middles;
+    middles->interpolate(increment, of_middles);
+    for (unsigned int p = 0; p < of_points.size(); ++p)
+      if (middles->first[p + 1] > middles->first[p])
+        of_points[p] = of_middles[p];
+  }
+
+  template <int dim>
+  void
   Footprints<dim>::spread(const std::vector<Tensor<1, dim>> &at_points,
                           Vector                            &field) const
   {

@@ -1,3 +1,4 @@
+#include <impm/points/point_domains.h>
 #include <impm/run/flight.h>
 #include <impm/run/motion_limits.h>
 
@@ -7,6 +8,31 @@
 namespace impm
 {
   using namespace dealii;
+
+  template <int dim>
+  bool
+  put_back(const std::array<double, 2 * dim> &faces,
+           const Tensor<1, dim>              &extents,
+           const GeometryKind                 geometry,
+           Point<dim>                        &place)
+  {
+    bool is_put_back = false;
+    for (unsigned int d = 0; d < dim; ++d)
+      for (unsigned int f = 2 * d; f < 2 * d + 2; ++f)
+        {
+          const double inwards = f % 2 == 0 ? 1 : -1;
+          const double inside  = inwards * (place[d] - faces[f]);
+          const double slack = 1e-12 * std::max(extents[d], std::abs(faces[f]));
+          const bool   is_axis =
+            geometry == GeometryKind::axisymmetric && f == 0 && faces[f] == 0;
+          if (inside >= -slack && (inside < 0 || (is_axis && inside == 0)))
+            {
+              place[d]    = faces[f] + inwards * slack;
+              is_put_back = true;
+            }
+        }
+    return is_put_back;
+  }
 
   namespace
   {
@@ -66,14 +92,14 @@ namespace impm
 
   template <int dim>
   GridMotion
-  motion_through_grid(const StepProblem<dim>            &problem,
-                      const std::vector<Tensor<1, dim>> &increments,
-                      const BackgroundGrid<dim>         &grid,
-                      const MaterialPoints<dim>         &points,
-                      const RigidBodies<dim>            &rigid,
-                      const Faces<dim>                  &faces,
-                      const GridPolicy<dim>             &policy,
-                      const double                       longest_in_cells)
+  motion_through_grid(const StepProblem<dim>      &problem,
+                      std::vector<Tensor<1, dim>> &increments,
+                      const BackgroundGrid<dim>   &grid,
+                      const MaterialPoints<dim>   &points,
+                      const RigidBodies<dim>      &rigid,
+                      const Faces<dim>            &faces,
+                      const GridPolicy<dim>       &policy,
+                      const double                 longest_in_cells)
   {
     const double infinite = std::numeric_limits<double>::infinity();
     // Material that has not reached a face yet does not feel it: a long step
@@ -97,13 +123,20 @@ namespace impm
     unsigned int p = 0;
     for (const auto &particle : points.sorted.particles)
       {
-        motion.forbidden =
-          forbidden<dim>(particle,
-                         particle.get_location() + increments[p++],
-                         end,
-                         points.layout.geometry);
-        if (!motion.forbidden.empty())
-          break;
+        const auto &x    = particle.get_location();
+        auto       &step = increments[p++];
+        if (!grid.is_lagrangian)
+          {
+            auto place = x + step;
+            if (put_back<dim>(end,
+                              extents_of<dim>(particle.get_surrounding_cell()),
+                              points.layout.geometry,
+                              place))
+              step = place - x;
+          }
+        if (motion.forbidden.empty())
+          motion.forbidden =
+            forbidden<dim>(particle, x + step, end, points.layout.geometry);
       }
     for (const auto &text :
          Utilities::MPI::all_gather(points.communicator, motion.forbidden))
@@ -152,6 +185,8 @@ namespace impm
     return motion;
   }
 
+  template decltype(put_back<2>)            put_back<2>;
+  template decltype(put_back<3>)            put_back<3>;
   template decltype(motion_through_grid<2>) motion_through_grid<2>;
   template decltype(motion_through_grid<3>) motion_through_grid<3>;
 } // namespace impm

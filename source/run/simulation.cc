@@ -219,7 +219,7 @@ namespace impm
       }
     if (!solution.converged)
       return solution.failure;
-    problem->footprints.interpolate(result.increment, increments);
+    problem->footprints.move_points(result.increment, increments);
     // Of one step, as ever, unless the grid has moved.
     const double most   = is_off_grid() ? scene.grid.reset_motion :
                                           std::max(1., scene.grid.reset_motion);

@@ -6,6 +6,7 @@
 #include <impm/points/material_points.h>
 
 #include <array>
+#include <memory>
 #include <vector>
 
 namespace impm
@@ -137,6 +138,16 @@ namespace impm
     interpolate(const Vector                        &field,
                 std::vector<dealii::Tensor<1, dim>> &at_points) const;
 
+    /**
+     * How far the points go: with what they stand for but, where a face of the
+     * domain cuts a box, with the part of it that is symmetric about the point.
+     * The middle of all that is left lies farther from the face than the point,
+     * which would pass through it where the material is pressed against it.
+     */
+    void
+    move_points(const Vector                        &increment,
+                std::vector<dealii::Tensor<1, dim>> &of_points) const;
+
     /** field += sum_p S_p at_points_p; ghosts of the field are not summed. */
     void
     spread(const std::vector<dealii::Tensor<1, dim>> &at_points,
@@ -146,7 +157,8 @@ namespace impm
     std::size_t
     memory_consumption() const
     {
-      return bytes_of(cells, point, weight, inverse_radius, first, entries) +
+      return (middles ? middles->memory_consumption() : 0) +
+             bytes_of(cells, point, weight, inverse_radius, first, entries) +
              bytes_of(patches, patch_points, patch_nodes, place) +
              bytes_of(values, gradients, moved_by, cell_of_entry);
     }
@@ -164,6 +176,9 @@ namespace impm
     std::vector<unsigned int> patch_points, patch_nodes;
     /** Where the nodes of an entry stand among those of its patch. */
     std::vector<unsigned int> place;
+
+    /** Of boxes that faces cut, see move_points(); null if there are none. */
+    std::shared_ptr<Footprints> middles;
 
     /** Boxes of this rank that had to be cut. */
     unsigned int n_limited_boxes = 0;

@@ -19,18 +19,31 @@ namespace impm
     double in_cells = 0;
   };
 
+  /**
+   * Takes a place that round-off, 1e-12 of a cell or of where the face is, has
+   * taken through a face of the domain or onto the axis as far inside; returns
+   * whether it did.
+   */
+  template <int dim>
+  bool
+  put_back(const std::array<double, 2 * dim> &faces,
+           const dealii::Tensor<1, dim>      &extents,
+           GeometryKind                       geometry,
+           dealii::Point<dim>                &place);
+
   /** Of the points' increments in a step that has converged; none but those
-   * that meet nothing may go as far as `longest_in_cells`. Collective. */
+   * that meet nothing may go as far as `longest_in_cells`. Those that round-off
+   * takes out of the domain are put_back(). Collective. */
   template <int dim>
   GridMotion
-  motion_through_grid(const StepProblem<dim>                    &problem,
-                      const std::vector<dealii::Tensor<1, dim>> &increments,
-                      const BackgroundGrid<dim>                 &grid,
-                      const MaterialPoints<dim>                 &points,
-                      const RigidBodies<dim>                    &rigid,
-                      const Faces<dim>                          &faces,
-                      const GridPolicy<dim>                     &policy,
-                      double longest_in_cells);
+  motion_through_grid(const StepProblem<dim>              &problem,
+                      std::vector<dealii::Tensor<1, dim>> &increments,
+                      const BackgroundGrid<dim>           &grid,
+                      const MaterialPoints<dim>           &points,
+                      const RigidBodies<dim>              &rigid,
+                      const Faces<dim>                    &faces,
+                      const GridPolicy<dim>               &policy,
+                      double                               longest_in_cells);
 } // namespace impm
 
 #endif

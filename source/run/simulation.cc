@@ -202,8 +202,8 @@ namespace impm
     report.line_searches += solution.line_searches;
     report.projections += solution.projections;
     report.noise_stops = solution.stopped_at_noise;
-    report.residual =
-      solution.residuals.empty() ? 0 : solution.residuals.back();
+    residuals          = solution.residuals;
+    report.residual    = residuals.empty() ? 0 : residuals.back();
     std::ostringstream iterations;
     for (unsigned int i = 0; i < solution.residuals.size(); ++i)
       iterations << ' ' << solution.residuals[i]
@@ -314,7 +314,7 @@ namespace impm
             std::ostringstream where;
             where << "at t = " << time << " s, step " << report.step << ": "
                   << failure << ", and dt = " << dt
-                  << " s is below the smallest time step";
+                  << " s is below the smallest time step; " << explain(failure);
             throw ComputationError(where.str());
           }
       }

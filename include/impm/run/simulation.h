@@ -132,6 +132,11 @@ namespace impm
     void
     warn(const std::string &kind, const std::string &text);
 
+    /** The likely causes of a step that cannot be made, with what failed last.
+     * Collective. */
+    std::string
+    explain(const std::string &failure) const;
+
     /** Whether steps that fail may be damped. */
     bool
     can_jump() const
@@ -240,11 +245,12 @@ namespace impm
 
     WorkDone<dim>                work;
     typename WorkDone<dim>::Step step_work; ///< of the step that is solved
-    Vector       end_forces;    ///< of the step that is solved, see StepProblem
-    double       step_gain = 0; ///< likewise, see energy_gain_of_step()
-    StepFigures  figures;       ///< likewise
-    Jump         jump;          ///< that is on its way, if any
-    PointChanges resampled;     ///< since the start
+    Vector      end_forces;    ///< of the step that is solved, see StepProblem
+    double      step_gain = 0; ///< likewise, see energy_gain_of_step()
+    StepFigures figures;       ///< likewise
+    std::vector<double> residuals; ///< likewise, see NewtonSolver::Result
+    Jump                jump;      ///< that is on its way, if any
+    PointChanges        resampled; ///< since the start
 
     Pictures<dim>             pictures;
     History<dim>              history;

@@ -1,0 +1,46 @@
+#ifndef impm_run_likely_causes_h
+#define impm_run_likely_causes_h
+
+#include <impm/balance/step_problem.h>
+
+#include <string>
+#include <vector>
+
+namespace impm
+{
+  /** What is known of a step that could not be made however short. */
+  struct FailedStep
+  {
+    std::string         failure;   ///< of the last attempt
+    std::vector<double> residuals; ///< of its iterations, over the scale
+
+    bool         is_unstable   = false; ///< the equilibrium that it begins from
+    unsigned int pieces_before = 0, pieces = 0; ///< of all bodies
+    double       points_per_cell = 1;           ///< smallest, by volume
+    double       drift           = 0;           ///< see deformation_drift()
+    bool         are_plain       = false;       ///< points without boxes
+    double       fullest         = 0; ///< volume of points over that of a cell
+    double       smallest_J = 1, largest_J = 1; ///< of a point
+    bool         bodies_touch = false;          ///< share a node
+  };
+
+  /** What it may have failed for, for people: the likely ones, in their order,
+   * or that there is no sign of any. */
+  std::string
+  likely_causes(const FailedStep &step);
+
+  /** Largest share of a cell that the points in it fill; above 1 where material
+   * lies in itself. Collective. */
+  template <int dim>
+  double
+  fullest_cell(const MaterialPoints<dim> &points);
+
+  /** Whether points of two bodies touch a node. Collective. */
+  template <int dim>
+  bool
+  bodies_touch(const MaterialPoints<dim> &points,
+               const Footprints<dim>     &footprints,
+               const Discretization<dim> &discretization);
+} // namespace impm
+
+#endif

@@ -1,0 +1,55 @@
+#include <impm/footprints/pieces.h>
+#include <impm/points/deformation_drift.h>
+#include <impm/run/likely_causes.h>
+#include <impm/run/simulation.h>
+
+#include <numeric>
+
+// What a run says when it cannot go on.
+namespace impm
+{
+  using namespace dealii;
+
+  template <int dim>
+  std::string
+  Simulation<dim>::explain(const std::string &failure) const
+  {
+    FailedStep step;
+    step.failure     = failure;
+    step.residuals   = residuals;
+    step.is_unstable = report.unstable > 0;
+    step.are_plain   = scene.grid.method == GridMethod::mpm;
+    step.smallest_J = step.largest_J = 1;
+    for (unsigned int p = 0; p < points.size(); ++p)
+      {
+        const double J  = determinant(deformation_gradient(points, p));
+        step.smallest_J = std::min(step.smallest_J, J);
+        step.largest_J  = std::max(step.largest_J, J);
+      }
+    step.smallest_J = Utilities::MPI::min(step.smallest_J, communicator);
+    step.largest_J  = Utilities::MPI::max(step.largest_J, communicator);
+    if (!grid.is_lagrangian)
+      {
+        const auto now     = count_pieces(points,
+                                      problem->footprints,
+                                      *problem->discretization,
+                                      scene.bodies.size());
+        step.pieces        = std::accumulate(now.begin(), now.end(), 0u);
+        step.pieces_before = std::accumulate(pieces.begin(), pieces.end(), 0u);
+        if (pieces.empty()) // as many as there are bodies
+          step.pieces_before =
+            now.size() - std::count(now.begin(), now.end(), 0u);
+        step.points_per_cell = points_per_cell(grid, points).smallest;
+        step.drift           = deformation_drift(points);
+        step.fullest         = fullest_cell(points);
+        step.bodies_touch =
+          bodies_touch(points, problem->footprints, *problem->discretization);
+      }
+    return likely_causes(step);
+  }
+
+  template std::string
+  Simulation<2>::explain(const std::string &) const;
+  template std::string
+  Simulation<3>::explain(const std::string &) const;
+} // namespace impm

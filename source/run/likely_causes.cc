@@ -1,0 +1,157 @@
+#include <impm/points/point_layout.h>
+#include <impm/run/likely_causes.h>
+
+#include <algorithm>
+#include <sstream>
+
+namespace impm
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** Whether the last iterations have left a residual as small as round-off
+     * lets it be. */
+    bool
+    stays_at_round_off(const std::vector<double> &residuals)
+    {
+      constexpr unsigned int n = 4;
+      if (residuals.size() < n + 1)
+        return false;
+      const auto [least, most] =
+        std::minmax_element(residuals.end() - n, residuals.end());
+      return *most < 1e-9 * residuals.front() && *least > 0.1 * *most;
+    }
+  } // namespace
+
+  std::string
+  likely_causes(const FailedStep &step)
+  {
+    std::ostringstream text;
+    const auto         add = [&](const std::string &name) -> std::ostream         &{
+      return text << (text.str().empty() ? "likely " : ", or ") << name;
+    };
+    const auto failed_by = [&](const std::string &words) {
+      return step.failure.find(words) != std::string::npos;
+    };
+    if (step.is_unstable)
+      add(
+        "a limit point: the equilibrium before is not stable, so that there is "
+        "none near at more load");
+    if (step.pieces > step.pieces_before || step.points_per_cell < 0.5)
+      add("a tear: ") << "material has parted, " << step.pieces
+                      << " pieces hang together and a cell has "
+                      << step.points_per_cell
+                      << " points (let points split, or begin with more)";
+    if (failed_by("whole cell") || (step.are_plain && step.drift > 0.1))
+      add("crossing: ") << "points go far through the grid, and their "
+                           "deformation has drifted from how they lie by "
+                        << 100 * step.drift
+                        << " % (shorter steps, or boxes: Grid/Method = GIMP)";
+    if (step.fullest > 1.3)
+      add("an overfull cell: ")
+        << "points in one have " << step.fullest
+        << " times its volume, so that material lies in itself (a finer grid "
+           "where it folds)";
+    if (step.bodies_touch)
+      add("contact: ") << "two bodies share nodes, or come to (shorter steps "
+                          "as they meet)";
+    if (failed_by("inside out") || step.smallest_J < 0.1 || step.largest_J > 10)
+      add("the material: ")
+        << "points have " << step.smallest_J << " to " << step.largest_J
+        << " times their volume, and turn inside out beyond what the law "
+           "bears";
+    if (stays_at_round_off(step.residuals))
+      add("a tolerance below round-off: ")
+        << "the residual stays at " << step.residuals.back()
+        << " ('Newton tolerance')";
+    return text.str().empty() ?
+             "no sign of the usual causes: shorter steps, or a "
+             "finer grid, may tell" :
+             text.str();
+  }
+
+  template <int dim>
+  double
+  fullest_cell(const MaterialPoints<dim> &points)
+  {
+    double                                            fullest = 0, volume = 0;
+    typename Triangulation<dim>::active_cell_iterator cell;
+    const auto                                        finish = [&]() {
+      if (volume == 0)
+        return;
+      double of_cell = 1;
+      for (unsigned int d = 0; d < dim; ++d)
+        of_cell *= cell_extent(cell, d);
+      if (points.layout.geometry == GeometryKind::axisymmetric)
+        of_cell *= 2 * numbers::PI * cell->center()[0];
+      fullest = std::max(fullest, volume / of_cell);
+    };
+    unsigned int p = 0;
+    for (const auto &particle : points.sorted.particles)
+      {
+        const auto here = particle.get_surrounding_cell();
+        if (p == 0 || here != cell)
+          {
+            finish();
+            cell   = here;
+            volume = 0;
+          }
+        // The thickness of a plane is that at the start.
+        const auto   F = points.layout.load_tensor(points.fields(p) +
+                                                 points.offset_deformation);
+        const double J = points.layout.geometry == GeometryKind::plane_stress ?
+                           determinant(F) / F[2][2] :
+                           determinant(F);
+        volume += J * points.initial_volume(p);
+        ++p;
+      }
+    finish();
+    return Utilities::MPI::max(fullest, points.communicator);
+  }
+
+  template <int dim>
+  bool
+  bodies_touch(const MaterialPoints<dim> &points,
+               const Footprints<dim>     &footprints,
+               const Discretization<dim> &discretization)
+  {
+    Vector lowest, highest; // body at a node, one more, in its first component
+    discretization.initialize(lowest);
+    discretization.initialize(highest);
+    const double none = points.n_bodies() + 1;
+    for (unsigned int i = 0; i < discretization.node_positions.size(); ++i)
+      lowest.local_element(dim * i) = none;
+    for (const auto &cell : footprints.cells)
+      for (unsigned int e = cell.begin; e < cell.end; ++e)
+        for (unsigned int n = 0; n < Footprints<dim>::n_nodes; ++n)
+          if (footprints.touches(e, n))
+            {
+              const double       body = points.body(footprints.point[e]) + 1;
+              const unsigned int i    = dim * cell.nodes[n];
+              lowest.local_element(i) = std::min(lowest.local_element(i), body);
+              highest.local_element(i) =
+                std::max(highest.local_element(i), body);
+            }
+    lowest.compress(VectorOperation::min);
+    highest.compress(VectorOperation::max);
+    bool touch = false;
+    for (unsigned int i = 0; i < highest.locally_owned_size(); i += dim)
+      touch = touch || (highest.local_element(i) > 0 &&
+                        lowest.local_element(i) < highest.local_element(i));
+    return Utilities::MPI::max(touch ? 1 : 0, discretization.communicator) == 1;
+  }
+
+  template double
+  fullest_cell(const MaterialPoints<2> &);
+  template double
+  fullest_cell(const MaterialPoints<3> &);
+  template bool
+  bodies_touch(const MaterialPoints<2> &,
+               const Footprints<2> &,
+               const Discretization<2> &);
+  template bool
+  bodies_touch(const MaterialPoints<3> &,
+               const Footprints<3> &,
+               const Discretization<3> &);
+} // namespace impm

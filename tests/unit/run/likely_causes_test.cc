@@ -1,0 +1,109 @@
+#include <impm/base/exceptions.h>
+#include <impm/run/likely_causes.h>
+
+#include <gtest/gtest.h>
+
+#include "run_file.h"
+
+using namespace impm;
+
+namespace
+{
+  /** What a scene says when it cannot go on. */
+  template <int dim = 2>
+  std::string
+  failure_of(const std::string &name, const Overrides &overrides)
+  {
+    try
+      {
+        run_file<dim>(name, overrides);
+      }
+    catch (const ComputationError &error)
+      {
+        return error.what();
+      }
+    return "done";
+  }
+
+  void
+  expect_cause(const std::string &text, const std::string &cause)
+  {
+    EXPECT_NE(text.find(cause), std::string::npos) << text;
+    EXPECT_NE(text.find("at t = "), std::string::npos) << text;
+    EXPECT_NE(text.find("likely"), std::string::npos) << text;
+  }
+
+  // No second attempt.
+  const Overrides at_once = {"Time/Smallest time step=1"};
+} // namespace
+
+
+// A symmetric arch under a weight that grows beyond what it bears.
+TEST(LikelyCauses, ALimitPoint)
+{
+  expect_cause(failure_of("extreme/arch",
+                          {"Grid/Cells=80, 28",
+                           "Solver/Unstable equilibria=warn"}),
+               "a limit point");
+}
+
+
+// Plain points that drop off.
+TEST(LikelyCausesMpi, ATear)
+{
+  expect_cause(failure_of<3>("extreme/hanging_cube",
+                             {"Grid/Method=MPM", "Time/End time=0.9"}),
+               "a tear");
+}
+
+
+TEST(LikelyCausesMpi, CrossingOfCells)
+{
+  expect_cause(failure_of("upsetting_rigid_points",
+                          Overrides{"Time/Time step=2e-3"} + at_once),
+               "crossing");
+}
+
+
+// Disks that fly into each other too fast for a step.
+TEST(LikelyCausesMpi, Contact)
+{
+  expect_cause(failure_of("disks",
+                          Overrides{"General/Constants=speed=2",
+                                    "Materials/rubber/Law=neo-Hookean",
+                                    "Time/Time step=0.02",
+                                    "Time/End time=1",
+                                    "Reference/Names="} +
+                            at_once),
+               "contact");
+}
+
+
+TEST(LikelyCausesMpi, TheMaterial)
+{
+  expect_cause(failure_of("extreme/flight",
+                          Overrides{"Bodies/block/Velocity=0; "
+                                    "-60*(y-5.6)",
+                                    "Time/Integrator=explicit",
+                                    "Time/Time step=0.02"} +
+                            at_once),
+               "the material");
+}
+
+
+// What no scene does by itself: a body in a body, a residual that round-off
+// keeps up, where Newton's method stops (noise_stops).
+TEST(LikelyCauses, OfFigures)
+{
+  FailedStep step;
+  step.failure = "Newton's method did not converge";
+  EXPECT_NE(likely_causes(step).find("no sign"), std::string::npos);
+  step.fullest = 1.8;
+  EXPECT_EQ(likely_causes(step).rfind("likely an overfull cell", 0), 0u);
+  step.fullest   = 1;
+  step.residuals = {1, 1e-5, 2e-12, 1.5e-12, 1.7e-12, 1.6e-12};
+  EXPECT_EQ(likely_causes(step).rfind("likely a tolerance below round-off", 0),
+            0u);
+  step.bodies_touch = true;
+  EXPECT_NE(likely_causes(step).find(", or a tolerance"), std::string::npos);
+}

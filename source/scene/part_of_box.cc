@@ -85,7 +85,7 @@ namespace impm
             const BoundingBox<dim>                        &box)
   {
     constexpr unsigned int n         = dim == 2 ? 8 : 6;
-    constexpr double       tolerance = 1e-3;
+    constexpr double       tolerance = 1e-2;
     const auto             is_inside = [&](const Point<dim> &unit) {
       return contains(box.unit_to_real(unit));
     };

@@ -54,7 +54,7 @@ namespace impm
     /** How many points of a body lie in each other one, by its number. */
     using SharedPoints = std::vector<unsigned int>;
 
-    /** Calls an action with the number and the shape of every other body. */
+    /** Calls an action with the number of every other body that has a shape. */
     template <int dim, typename Action>
     void
     for_others(const Bodies<dim>   &bodies,
@@ -63,18 +63,22 @@ namespace impm
     {
       for (unsigned int b = 0; b < bodies.size(); ++b)
         if (bodies[b].name != body.name && bodies[b].shape)
-          action(b, *bodies[b].shape);
+          action(b);
     }
 
+    /** Bodies of whole cells share those whose middle, `decisive`, they do. */
     template <int dim>
     void
     count_shared(const Bodies<dim>   &bodies,
                  const BodySpec<dim> &body,
                  const Point<dim>    &position,
+                 const Point<dim>    &decisive,
                  SharedPoints        &shared)
     {
-      for_others(bodies, body, [&](const unsigned int b, const auto &shape) {
-        shared[b] += shape.contains(position);
+      for_others(bodies, body, [&](const unsigned int b) {
+        shared[b] += bodies[b].shape->contains(
+          bodies[b].surface == SurfacePoints::whole_cells ? decisive :
+                                                            position);
       });
     }
 
@@ -105,10 +109,10 @@ namespace impm
       const auto  part     = find_part(contains, box);
       if (part.share == 0)
         return false;
-      for_others(bodies, body, [&](const unsigned int b, const auto &shape) {
+      for_others(bodies, body, [&](const unsigned int b) {
         const std::function<bool(const Point<dim> &)> in_both =
           [&](const Point<dim> &place) {
-            return contains(place) && shape.contains(place);
+            return contains(place) && bodies[b].shape->contains(place);
           };
         shared[b] += find_part(in_both, box).share > 0;
       });
@@ -180,13 +184,18 @@ namespace impm
                   }
                 const BoundingBox<dim> box({seed.position - 0.5 * seed.domain,
                                             seed.position + 0.5 * seed.domain});
-                if (body.cuts_boxes && is_cut(box, *body.shape))
+                if (body.surface == SurfacePoints::cut_boxes &&
+                    is_cut(box, *body.shape))
                   {
                     if (!cut_to_shape(bodies, body, box, seed, shared))
                       continue;
                   }
-                else if (body.shape->contains(seed.position))
-                  count_shared(bodies, body, seed.position, shared);
+                else if (const auto decisive =
+                           body.surface == SurfacePoints::whole_cells ?
+                             cell->center() :
+                             seed.position;
+                         body.shape->contains(decisive))
+                  count_shared(bodies, body, seed.position, decisive, shared);
                 else
                   continue;
                 seed.volume *= circumference(geometry, seed.position);
@@ -271,7 +280,7 @@ namespace impm
                      1. / dim);
           for (unsigned int d = 0; d < dim; ++d)
             seed.domain[d] = extent;
-          count_shared(bodies, body, seed.position, shared);
+          count_shared(bodies, body, seed.position, seed.position, shared);
           seeds.push_back(seed);
         }
     }

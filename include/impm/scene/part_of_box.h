@@ -20,13 +20,13 @@ namespace impm
   };
 
   /**
-   * The part of a box where `contains` holds, to second order in the spacing of
-   * the lines along which it is looked for: eight in a plane and six by six in
-   * space, along the axis that is nearest to the surface's normal; along a line
-   * to 1e-5 of its length. What is narrower than a line's eighth (sixth) may be
-   * missed. A part of less than a thousandth is none, since its surface is
-   * where round-off puts it, and one that lacks as little is the whole box,
-   * exactly.
+   * The part of a box where `contains` holds, found along lines: eight in a
+   * plane and six by six in space, along the axis that is nearest to the normal
+   * of the surface, with its places on a line to 1e-5 of the box. What is
+   * thinner than that many parts of a line may be missed. A part of less than a
+   * hundredth is none, since so few points hold nothing, and one that lacks as
+   * little is the whole box, exactly: on average over surfaces neither adds nor
+   * takes anything.
    */
   template <int dim>
   PartOfBox<dim>

@@ -56,6 +56,28 @@ namespace impm
 
     template <int dim>
     void
+    add_surface(const Section &section, BodySpec<dim> &body)
+    {
+      std::vector<typename Choice<SurfacePoints>::Option> options = {
+        {"cut cells", SurfacePoints::cut_boxes},
+        {"points", SurfacePoints::whole_boxes},
+        {"whole cells", SurfacePoints::whole_cells}};
+      if (!is_quasi_static(section.chosen))
+        std::swap(options[0], options[1]);
+      section.add("Surface",
+                  body.surface,
+                  options,
+                  "What points stand for in cells that the surface of the "
+                  "shape cuts. Cut cells: for what of their part of the cell "
+                  "lies inside. Points: for all of their part, if its middle "
+                  "lies inside. Whole cells: the same, if the middle of the "
+                  "cell lies inside, so that no cell serves two materials. "
+                  "The default is cut cells for quasi-static runs, else "
+                  "points, since little points come off where bodies meet.");
+    }
+
+    template <int dim>
+    void
     check_place(const Section       &section,
                 const Shape<dim>    &shape,
                 const GridSpec<dim> &grid)
@@ -106,13 +128,7 @@ namespace impm
                            "allowed for a rigid body on a Lagrangian grid, "
                            "whose nodes stick to it, are boxes");
           if (!lagrangian && !body.rigid)
-            section.add("Surface",
-                        body.cuts_boxes,
-                        {{"points", false}, {"cut cells", true}},
-                        "What a point is where the surface of the shape cuts "
-                        "its part of a cell. Points: the whole part, if its "
-                        "centre lies inside. Cut cells: what of it lies "
-                        "inside, at the centroid of that.");
+            add_surface(section, body);
           if (body.shape)
             check_place(section, *body.shape, grid);
         }

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <map>
 
 #include "expect_blame.h"
 
@@ -136,7 +138,9 @@ TEST(SeedingMpi, BoxesThatFitTheGridStayAsTheyAre)
           refined,
           Overrides{"Geometry/box/Lower corner=0.125, 0.25"}})
       {
-        const Model<2> model(block_scene(kind), overrides),
+        const Model<2> model(block_scene(kind),
+                             overrides +
+                               Overrides{"Bodies/block/Surface=points"}),
           other(block_scene(kind), cut + overrides);
         ASSERT_EQ(model.points.size(), other.points.size());
         auto particle = other.points.sorted.particles.begin();
@@ -163,6 +167,50 @@ TEST(SeedingMpi, AnInterfaceIsNoOverlap)
                cut + inclusion("0.3125"),
                "Bodies/block/Shape",
                {"overlap", "'ball'"});
+}
+
+
+TEST(SeedingMpi, WholeCellsServeOneMaterial)
+{
+  const Overrides whole = {"Bodies/block/Surface=whole cells",
+                           "Bodies/ball/Surface=whole cells"};
+  for (const auto &overrides : {Overrides{}, refined})
+    {
+      const Model<2>        model(block_scene("plane strain"),
+                           inclusion("0.3") + whole + overrides);
+      std::map<CellId, int> body;
+      unsigned int          p = 0;
+      std::array<double, 2> volumes{};
+      for (const auto &particle : model.points.sorted.particles)
+        {
+          const int  here = model.points.body(p);
+          const auto id   = particle.get_surrounding_cell()->id();
+          EXPECT_EQ(body.emplace(id, here).first->second, here);
+          volumes[here] += model.points.initial_volume(p++);
+        }
+      volumes = {Utilities::MPI::sum(volumes[0], MPI_COMM_WORLD),
+                 Utilities::MPI::sum(volumes[1], MPI_COMM_WORLD)};
+      EXPECT_NEAR(volumes[0] + volumes[1], 1, 1e-12);
+      EXPECT_NEAR(volumes[1], 0.09 * numbers::PI, 0.04);
+    }
+  // they leave no room for what another body has of its cells
+  expect_blame(block_scene("plane strain"),
+               cut + inclusion("0.3") + Overrides{whole[1]},
+               "Bodies/block/Shape",
+               {"overlap", "'ball'"});
+}
+
+
+TEST(Seeding, QuasiStaticBodiesAreCut)
+{
+  const auto surface = [](const Overrides &overrides) {
+    return scene_from<2>(block_scene("plane strain"), overrides)
+      .bodies[0]
+      .surface;
+  };
+  EXPECT_EQ(surface({}), SurfacePoints::cut_boxes);
+  EXPECT_EQ(surface(with_inertia), SurfacePoints::whole_boxes);
+  EXPECT_EQ(surface(with_inertia + cut), SurfacePoints::cut_boxes);
 }
 
 

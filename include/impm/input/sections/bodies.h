@@ -21,6 +21,14 @@ namespace impm
     split_and_merge
   };
 
+  /** What a point stands for where the surface of its shape cuts cells. */
+  enum class SurfacePoints
+  {
+    whole_boxes, ///< its box, if the middle of that lies inside
+    cut_boxes,   ///< what of its box lies inside
+    whole_cells  ///< its box, if the middle of its cell lies inside
+  };
+
   template <int dim>
   struct BodySpec
   {
@@ -31,11 +39,10 @@ namespace impm
     std::shared_ptr<const Shape<dim>> shape;
     std::string                       point_file;
     std::array<unsigned int, dim>     points_per_cell; ///< by direction
-    /** Whether points at the surface stand for what is inside of it. */
-    bool            cuts_boxes      = false;
-    PointAdaptation adaptation      = PointAdaptation::off;
-    double          points_across   = 2; ///< wished, of a cell
-    double          merge_tolerance = 0;
+    SurfacePoints                     surface    = SurfacePoints::whole_boxes;
+    PointAdaptation                   adaptation = PointAdaptation::off;
+    double                            points_across = 2; ///< wished, of a cell
+    double                            merge_tolerance = 0;
 
     std::shared_ptr<const Material>              material; ///< if deformable
     std::shared_ptr<dealii::FunctionParser<dim>> velocity; ///< at the start

@@ -1,3 +1,6 @@
+#include <deal.II/base/geometry_info.h>
+#include <deal.II/base/utilities.h>
+
 #include <impm/scene/part_of_box.h>
 
 #include <cmath>

@@ -66,19 +66,18 @@ namespace impm
           action(b);
     }
 
-    /** Bodies of whole cells share those whose middle, `decisive`, they do. */
     template <int dim>
     void
     count_shared(const Bodies<dim>   &bodies,
                  const BodySpec<dim> &body,
-                 const Point<dim>    &position,
-                 const Point<dim>    &decisive,
+                 const Seed<dim>     &seed,
                  SharedPoints        &shared)
     {
       for_others(bodies, body, [&](const unsigned int b) {
-        shared[b] += bodies[b].shape->contains(
-          bodies[b].surface == SurfacePoints::whole_cells ? decisive :
-                                                            position);
+        const auto &other = bodies[b];
+        shared[b] += other.shape->contains(
+          other.surface == SurfacePoints::whole_cells ? seed.cell->center() :
+                                                        seed.position);
       });
     }
 
@@ -114,7 +113,9 @@ namespace impm
           [&](const Point<dim> &place) {
             return contains(place) && bodies[b].shape->contains(place);
           };
-        shared[b] += find_part(in_both, box).share > 0;
+        shared[b] += bodies[b].surface == SurfacePoints::whole_cells ?
+                       bodies[b].shape->contains(seed.cell->center()) :
+                       find_part(in_both, box).share > 0;
       });
       if (part.share == 1)
         return true;
@@ -190,12 +191,11 @@ namespace impm
                     if (!cut_to_shape(bodies, body, box, seed, shared))
                       continue;
                   }
-                else if (const auto decisive =
-                           body.surface == SurfacePoints::whole_cells ?
-                             cell->center() :
-                             seed.position;
-                         body.shape->contains(decisive))
-                  count_shared(bodies, body, seed.position, decisive, shared);
+                else if (body.shape->contains(body.surface ==
+                                                  SurfacePoints::whole_cells ?
+                                                cell->center() :
+                                                seed.position))
+                  count_shared(bodies, body, seed, shared);
                 else
                   continue;
                 seed.volume *= circumference(geometry, seed.position);
@@ -280,7 +280,7 @@ namespace impm
                      1. / dim);
           for (unsigned int d = 0; d < dim; ++d)
             seed.domain[d] = extent;
-          count_shared(bodies, body, seed.position, seed.position, shared);
+          count_shared(bodies, body, seed, shared);
           seeds.push_back(seed);
         }
     }

@@ -38,7 +38,7 @@ TEST(SceneMpi, BodiesThatDoNotFit)
                "Bodies/block/Shape",
                {"overlap", "'block'", "'second'"});
   // slivers that miss every point
-  expect_blame({"Geometry/box/Upper corner=0.01, 1"},
+  expect_blame({"Geometry/box/Upper corner=0.001, 1"},
                "Bodies/block/Shape",
                {"no points"});
   expect_blame({"Geometry/box/Upper corner=1.5, 1"},

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 using namespace impm;
 using namespace dealii;
@@ -21,11 +22,11 @@ namespace
   /** Measure and first and second moments along x of what lies inside, from
    * n^dim boxes over [0, 1.3]^dim. */
   template <int dim, typename Contains>
-  std::array<double, 3>
+  std::vector<double>
   add_up(const unsigned int n, const Contains &contains)
   {
-    const double          edge = 1.3 / n;
-    std::array<double, 3> sums{};
+    const double        edge = 1.3 / n;
+    std::vector<double> sums(3);
     for (unsigned int i = 0; i < Utilities::fixed_power<dim>(n); ++i)
       {
         Point<dim> lower, upper;
@@ -48,19 +49,17 @@ namespace
     return sums;
   }
 
-  /** Errors of two grids, one eight times as fine, have to be below those of
-   * second order in the edges of the boxes. */
+  /** Errors have to be below those of second order in the edges of the boxes:
+   * they scatter with where the surface cuts them. */
   template <int dim, typename Contains>
   void
-  converge(const Contains &contains, const std::array<double, 3> &exact)
+  converge(const Contains &contains, const std::vector<double> &exact)
   {
-    for (const unsigned int n : {4, 32})
+    for (const unsigned int n : {8, 16, dim == 2 ? 128 : 32})
       {
-        if (dim == 3 && n == 32)
-          continue;
         const auto sums = add_up<dim>(n, contains);
         for (unsigned int i = 0; i < 3; ++i)
-          EXPECT_NEAR(sums[i] / exact[i], 1, 0.02 / (n * n)) << n << ' ' << i;
+          EXPECT_NEAR(sums[i] / exact[i], 1, 0.15 / (n * n)) << n << ' ' << i;
       }
   }
 } // namespace

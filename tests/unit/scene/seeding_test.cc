@@ -188,8 +188,8 @@ TEST(SeedingMpi, WholeCellsServeOneMaterial)
           EXPECT_EQ(body.emplace(id, here).first->second, here);
           volumes[here] += model.points.initial_volume(p++);
         }
-      volumes = {Utilities::MPI::sum(volumes[0], MPI_COMM_WORLD),
-                 Utilities::MPI::sum(volumes[1], MPI_COMM_WORLD)};
+      for (double &volume : volumes)
+        volume = Utilities::MPI::sum(volume, MPI_COMM_WORLD);
       EXPECT_NEAR(volumes[0] + volumes[1], 1, 1e-12);
       EXPECT_NEAR(volumes[1], 0.09 * numbers::PI, 0.04);
     }

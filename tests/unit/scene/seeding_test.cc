@@ -211,24 +211,6 @@ TEST(Seeding, QuasiStaticBodiesAreCut)
   EXPECT_EQ(surface({}), SurfacePoints::cut_boxes);
   EXPECT_EQ(surface(with_inertia), SurfacePoints::whole_boxes);
   EXPECT_EQ(surface(with_inertia + cut), SurfacePoints::cut_boxes);
-}
-
-
-TEST(Seeding, OnlyDeformableShapesHaveASurface)
-{
-  const auto refuse = [](const Overrides &overrides) {
-    try
-      {
-        scene_from<2>(block_scene("plane strain"), overrides + cut);
-        FAIL() << "is taken";
-      }
-    catch (const InputError &error)
-      {
-        EXPECT_NE(std::string(error.what() + error.entry).find("Surface"),
-                  std::string::npos)
-          << error.what();
-      }
-  };
-  refuse({"Grid/Method=Lagrangian"});
-  refuse({"Bodies/block/Kind=rigid"});
+  // Gauss points of cells that fit the body
+  EXPECT_EQ(surface({"Grid/Method=Lagrangian"}), SurfacePoints::whole_boxes);
 }

@@ -48,7 +48,7 @@ namespace impm
   {
     static const std::vector<MaterialEntry> list = {
       law<LogStrainElastic, ElasticConstants>("log-strain elastic"),
-      law<LogStrainVonMises, ElasticConstants, LinearHardening>(
+      law<LogStrainVonMises, ElasticConstants, SaturatingHardening>(
         "log-strain von Mises", true),
       law<NeoHookean<false>, ElasticConstants>("neo-Hookean"),
       law<NeoHookean<true>, ElasticPair>("decoupled neo-Hookean"),

@@ -266,8 +266,8 @@ namespace impm
       builder.remember(points);
     for (double dt = control.begin(time, step_unit());;)
       {
-        const std::string failure = attempt(dt);
-        const bool        failed  = !failure.empty();
+        std::string failure = attempt(dt);
+        bool        failed  = !failure.empty();
         if (failed && is_off_grid())
           {
             console.detail("  grid reset at t = " + std::to_string(time) +
@@ -298,6 +298,14 @@ namespace impm
           }
         if (part == 1)
           break;
+        // What is out of balance moves it by as much in however short a step.
+        if (!failed && dt < 1e-9 * scene.time.step * step_unit())
+          {
+            failure = "a node moves into a rigid body, however short the step";
+            failed  = true;
+            part    = 0.5;
+            why     = failure;
+          }
         if (failed && can_jump() &&
             (jump.is_on() || jump.mode.size() > 0 || control.is_too_short()))
           {

@@ -3,7 +3,7 @@
 
 #include <deal.II/physics/transformations.h>
 
-#include <impm/materials/hardening/linear.h>
+#include <impm/materials/hardening/saturating.h>
 #include <impm/materials/log_strain_elastic.h>
 
 #include <array>
@@ -16,13 +16,14 @@ namespace impm
    * limit
    *
    *   q = sqrt(3/2) |dev tau| <= sigma_y + H alpha
+   *                              + (sigma_s - sigma_y) (1 - exp(-delta alpha))
    *
    * with associated, isochoric flow and alpha the equivalent plastic strain.
    * In principal logarithmic strains the exponential map makes the return
    * mapping that of small strains (Simo 1992, see log_strain.h), closed form
    * with linear hardening. A step minimizes over alpha the potential
    *
-   *   W = psi(eps_e) + sigma_y alpha + H / 2 alpha^2,
+   *   W = psi(eps_e) + integral of the yield limit over alpha,
    *
    * whose derivative by the trial strains is tau, so that D is symmetric.
    *
@@ -32,10 +33,10 @@ namespace impm
   class LogStrainVonMises final : public LawInLanes<LogStrainVonMises>
   {
   public:
-    LogStrainVonMises(const MaterialSpec     &spec,
-                      PointLayout            &history,
-                      const ElasticConstants &elasticity,
-                      const LinearHardening  &hardening)
+    LogStrainVonMises(const MaterialSpec        &spec,
+                      PointLayout               &history,
+                      const ElasticConstants    &elasticity,
+                      const SaturatingHardening &hardening)
       : LawInLanes(spec, elasticity.young, elasticity.longitudinal_modulus())
       , elasticity{elasticity}
       , hardening(hardening)
@@ -89,10 +90,12 @@ namespace impm
       auto         end    = trial;
       if (any_of(flows))
         {
-          const double shear      = elasticity.shear;
-          const double resistance = 3. * shear + hardening.modulus;
-          const Number flow = select(flows, excess / resistance, Number(0.));
+          const double shear = elasticity.shear;
+          const Number flow  = select(flows,
+                                     hardening.flow(excess, before, 3. * shear),
+                                     Number(0.));
           alpha += flow;
+          const Number resistance = 3. * shear + hardening.slope(alpha);
 
           // The deviator shrinks onto the yield limit along its own direction.
           const Number size = select(flows, q, Number(1.));
@@ -163,10 +166,10 @@ namespace impm
     }
 
   private:
-    const HenckyElasticity elasticity;
-    const LinearHardening  hardening;
-    const HistoryTensor    elastic;
-    const unsigned int     plastic_offset;
+    const HenckyElasticity    elasticity;
+    const SaturatingHardening hardening;
+    const HistoryTensor       elastic;
+    const unsigned int        plastic_offset;
   };
 } // namespace impm
 

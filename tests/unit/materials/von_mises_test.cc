@@ -31,8 +31,13 @@ namespace
   {
     explicit PointState(const double       hardening,
                         const GeometryKind geometry = GeometryKind::three_d)
+      : PointState(SaturatingHardening{{sigma_y, hardening}}, geometry)
+    {}
+
+    explicit PointState(const SaturatingHardening &hardening,
+                        const GeometryKind geometry = GeometryKind::three_d)
       : layout(geometry)
-      , law({1000.}, layout, elasticity, {sigma_y, hardening})
+      , law({1000.}, layout, elasticity, hardening)
       , history(layout.size())
     {
       law.initialize_history(history.data());
@@ -140,6 +145,31 @@ TEST(VonMises, TangentOfPlasticSteps)
             continue; // too near to the kink for differences
           EXPECT_LT(derivative_error(point, increment, 5e-4), 1e-11)
             << hardening << planar << increment;
+        }
+}
+
+
+// Hardening that saturates within a step, too.
+TEST(VonMises, TangentAndStressWhereHardeningSaturates)
+{
+  std::mt19937 generator(2);
+  for (const double rate : {1., 20., 1000.})
+    for (const bool planar : {true, false})
+      for (unsigned int n = 0; n < 20; ++n)
+        {
+          const SaturatingHardening hardening{{sigma_y, 0.01}, 0.03, rate};
+          PointState                point(hardening);
+          point.advance(random_gradient(generator, planar, 0.25));
+          const auto increment = random_gradient(generator, planar, 0.25);
+          point.respond(increment);
+          const double alpha = point.alpha(point.trial_history);
+          if (alpha < point.alpha(point.history) + 0.02)
+            continue; // too near to the kink for differences
+          EXPECT_NEAR(von_mises(point.response.kirchhoff_stress),
+                      hardening.yield_stress(alpha),
+                      1e-13);
+          EXPECT_LT(derivative_error(point, increment, 5e-4), 1e-10)
+            << rate << planar << increment;
         }
 }
 

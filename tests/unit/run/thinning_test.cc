@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "run_file.h"
 
 using namespace impm;
@@ -37,4 +39,55 @@ TEST(ThinningMpi, DriftTellsOfForcesThatAreTooSmall)
       EXPECT_LT(lost_force, 0.75);
       EXPECT_NEAR(large_drift, 1 - lost_force, 0.1);
     }
+}
+
+
+// Without friction, to a twentieth of the height: exact.
+TEST(ThinningMpi, CompressionToATwentiethIsExact)
+{
+  for (const std::string method : {"GIMP", "MPM"})
+    {
+      SCOPED_TRACE(method);
+      const auto   columns = run_file("upsetting_frictionless",
+                                    {"Grid/Upper corner=0.048, 0.015",
+                                       "Grid/Cells=24, 8",
+                                       "Grid/Method=" + method,
+                                       "Bodies/billet/Point adaptation=split",
+                                       "Time/Time step=2e-4",
+                                       "Time/End time=0.01425"});
+      const double L       = std::log(20.);
+      const double load = (0.7e9 + 0.3e9 * L) / (1 + 0.3 / 200) * M_PI * 2e-3;
+      EXPECT_NEAR(columns.at("platen_load").back() / load, 1., 1e-3);
+    }
+}
+
+
+// Boxes are cut where the side folds onto the platen. Points that went with
+// what is left of them passed through it, and the run ended at 80 %.
+TEST(ThinningMpi, PointsOfAFoldStayBehindThePlaten)
+{
+  const auto columns = run_file("extreme/rough_platens",
+                                {"Grid/Cells=20, 8", "Time/Time step=2e-4"});
+  EXPECT_NEAR(columns.at("platen_displacement").back(), 0.0135, 1e-12);
+  EXPECT_NEAR(columns.at("largest_radius").back(), 0.031, 0.001);
+}
+
+
+// Points that move through most of the grid while they draw apart.
+TEST(ThinningMpi, ABarIsDrawnToTenTimesItsLength)
+{
+  const auto columns = run_file("extreme/drawn_bar", {"Grid/Cells=96, 2"});
+  EXPECT_NEAR(columns.at("stress").back() / 49.5, 1., 0.01);
+  EXPECT_EQ(columns.at("pieces").back(), 1);
+}
+
+
+// A node that is out of balance moves into the box however short the step: the
+// run once cut it for ever.
+TEST(ThinningMpi, ANodeIsNotDrivenIntoABoxForEver)
+{
+  const auto columns =
+    run_file("extreme/rough_platens_finite_elements",
+             {"Bodies/billet/Material=rubber", "Time/End time=0.0086"});
+  EXPECT_NEAR(columns.at("platen_displacement").back(), 0.0086, 1e-12);
 }

@@ -46,7 +46,10 @@ namespace impm
     const RateLaw::Hardening hardening(std::in_place, linear),
       softening(std::in_place, linear, 0.01, 0.2);
     return {make_law<LogStrainElastic>("log-strain elastic", g, c),
-            make_law<LogStrainVonMises>("log-strain von Mises", g, c, linear),
+            make_law<LogStrainVonMises>("log-strain von Mises",
+                                        g,
+                                        c,
+                                        SaturatingHardening{linear, 0.02, 5.}),
             make_law<NeoHookean<false>>("neo-Hookean", g, c),
             make_law<NeoHookean<true>>("decoupled neo-Hookean", g, c),
             make_law<LinearLaw>("linear elastic", g, c),

@@ -110,8 +110,8 @@ namespace impm
     }
 
     LinearHardening linear;
-    double          range; ///< of what saturates (Pa)
-    double          rate;  ///< its exponent
+    double          range = 0; ///< of what saturates (Pa)
+    double          rate  = 0; ///< its exponent
 
   private:
     template <typename Number>

@@ -40,20 +40,29 @@ namespace impm
     result.smallest      = std::numeric_limits<double>::max();
     double       sum     = 0;
     unsigned int n_cells = 0, n_here = 0;
-    double       volume = 0; ///< of the points of a cell
-    const auto   finish = [&](const auto &cell) {
+    double       volume      = 0; ///< of the points of a cell
+    const bool   has_domains = points.layout.find("initial_domain").has_value();
+    const unsigned int domain =
+      has_domains ? points.layout.offset("initial_domain") : 0;
+    Tensor<1, dim> lengths; ///< the same, along the axes
+    const auto     finish = [&](const auto &cell) {
       double number = n_here;
       if (!grid.is_lagrangian)
         {
           number /= volume;
           for (unsigned int d = 0; d < dim; ++d)
             number *= cell_extent(cell, d);
+          for (unsigned int d = 0; d < dim; ++d)
+            if (const double apart = lengths[d] / n_here / cell_extent(cell, d);
+                apart > 1.0001)
+              number = std::min(number, 1 / apart);
         }
       result.smallest = std::min(result.smallest, number);
       sum += number;
       ++n_cells;
-      n_here = 0;
-      volume = 0;
+      n_here  = 0;
+      volume  = 0;
+      lengths = Tensor<1, dim>();
     };
     typename Triangulation<dim>::active_cell_iterator cell;
     unsigned int                                      p = 0;
@@ -64,6 +73,21 @@ namespace impm
           finish(cell);
         cell = here;
         volume += present_measure(points, p, particle.get_location());
+        if (has_domains)
+          {
+            const double *fields = points.fields(p);
+            const auto    F =
+              points.layout.load_tensor(fields + points.offset_deformation);
+            for (unsigned int d = 0; d < dim; ++d)
+              {
+                double longest = 0;
+                for (unsigned int axis = 0; axis < dim; ++axis)
+                  longest =
+                    std::max(longest,
+                             std::abs(F[d][axis] * fields[domain + axis]));
+                lengths[d] += longest;
+              }
+          }
         ++n_here;
         ++p;
       }

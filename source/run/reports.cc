@@ -179,7 +179,8 @@ namespace impm
     if (history.last_density().smallest < 1)
       {
         std::ostringstream text;
-        text << "some cell has less than one point for its volume ("
+        text << "some cell has less than one point for its volume or along an "
+                "axis ("
              << history.last_density().smallest
              << "): forces there are those of single points; let points split, "
                 "or begin with more";

@@ -82,6 +82,19 @@ TEST(ThinningMpi, ABarIsDrawnToTenTimesItsLength)
 }
 
 
+// Two points a cell, drawn out to two and a half times their length along an
+// axis.
+TEST(ThinningMpi, PointsCountAlongTheAxisInWhichTheyAreFew)
+{
+  const auto columns = run_file("extreme/drawn_bar",
+                                {"Grid/Cells=96, 2",
+                                 "Bodies/bar/Point adaptation=off",
+                                 "Time/End time=1.5"});
+  EXPECT_NEAR(columns.at("smallest_points_per_cell").back(), 0.8, 0.1);
+  EXPECT_GT(columns.at("mean_points_per_cell").back(), 0.7);
+}
+
+
 // A node that is out of balance moves into the box however short the step: the
 // run once cut it for ever.
 TEST(ThinningMpi, ANodeIsNotDrivenIntoABoxForEver)

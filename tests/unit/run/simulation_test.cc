@@ -88,7 +88,8 @@ TEST(SimulationMpi, AFailedStepIsNotCounted)
 }
 
 
-// By more than round-off. Its box, cut by the axis, has a radius still and J > 0.
+// By more than round-off. Its box, cut by the axis, has a radius still and J >
+// 0.
 TEST(SimulationMpi, APointThatReachesTheAxisFails)
 {
   const auto left = leave_behind(

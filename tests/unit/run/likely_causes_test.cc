@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "run_file.h"
+#include "scene_fixture.h"
 
 using namespace impm;
 

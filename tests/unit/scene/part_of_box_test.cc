@@ -120,9 +120,9 @@ TEST(PartOfBox, MomentsOfABallConvergeAtSecondOrder)
 {
   const double pi = numbers::PI;
   converge<2>([](const auto &x) { return x.norm_square() <= 1; },
-              {pi / 4, 1. / 3, pi / 16});
+              {{pi / 4, 1. / 3, pi / 16}});
   converge<3>([](const auto &x) { return x.norm_square() <= 1; },
-              {pi / 6, pi / 16, pi / 30});
+              {{pi / 6, pi / 16, pi / 30}});
   // off the lattice, and not convex
   const Point<2> centre(0.31, 0.27);
   const double   r = 0.2;
@@ -130,7 +130,7 @@ TEST(PartOfBox, MomentsOfABallConvergeAtSecondOrder)
     [&](const Point<2> &x) {
       return x.norm_square() <= 1 && x.distance(centre) > r;
     },
-    {pi / 4 - pi * r * r,
-     1. / 3 - pi * r * r * centre[0],
-     pi / 16 - pi * r * r * (centre[0] * centre[0] + r * r / 4)});
+    {{pi / 4 - pi * r * r,
+      1. / 3 - pi * r * r * centre[0],
+      pi / 16 - pi * r * r * (centre[0] * centre[0] + r * r / 4)}});
 }

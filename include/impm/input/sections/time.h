@@ -42,15 +42,15 @@ namespace impm
     double     spectral_radius    = 1;     ///< of the generalised-alpha method
     bool       keeps_acceleration = false; ///< at the points
     /** Strain from a velocity that has been through the points. */
-    bool         momentum_formulation = false;
-    double       cfl_number           = 0; ///< 0: `step` is given
-    TransferKind transfer             = TransferKind::flip;
-    StepControlKind step_control = StepControlKind::fixed;
-    double       end, step, growth, largest_step, smallest_step;
-    double       error_tolerance   = 0; ///< over the way that points go
-    unsigned int wanted_iterations = 0; ///< a step
-    double       energy_tolerance = 0; ///< 0: none
-    unsigned int largest_number_of_steps;
+    bool            momentum_formulation = false;
+    double          cfl_number           = 0; ///< 0: `step` is given
+    TransferKind    transfer             = TransferKind::flip;
+    StepControlKind step_control         = StepControlKind::fixed;
+    double          end, step, growth, largest_step, smallest_step;
+    double          error_tolerance   = 0; ///< over the way that points go
+    unsigned int    wanted_iterations = 0; ///< a step
+    double          energy_tolerance  = 0; ///< 0: none
+    unsigned int    largest_number_of_steps;
 
     bool
     has_inertia() const

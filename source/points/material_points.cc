@@ -104,7 +104,8 @@ namespace impm
   {
     if (Utilities::MPI::n_mpi_processes(grid.communicator) == 1)
       return;
-    // Beyond neighbours that may be half as large.
+    // Beyond the neighbours, which may be half as large and whose cells a rank
+    // knows.
     const auto is_far = [&](const auto &particle) {
       const auto cell  = particle->get_surrounding_cell();
       const auto place = particle->get_location();
@@ -121,15 +122,26 @@ namespace impm
     std::vector<typename Particles::ParticleHandler<dim>::particle_iterator>
                                      far;
     std::vector<Point<dim>>          places;
-    std::vector<std::vector<double>> records; // fields, and the number behind
+    std::vector<std::vector<double>> records; // fields, place, number
     for (auto particle = particles.begin(); particle != particles.end();
          ++particle)
       if (is_far(particle))
         {
           const auto fields = particle->get_properties();
           far.push_back(particle);
-          places.push_back(particle->get_location());
+          // Off the faces of cells, of which more than one rank has each, or by
+          // round-off none; sort() mends what that costs.
+          auto place = particle->get_location();
+          for (unsigned int d = 0; d < dim; ++d)
+            {
+              const double lower = grid.face_of_vertices(2 * d);
+              const double upper = grid.face_of_vertices(2 * d + 1);
+              place[d] += 1e-9 * (lower + 0.4142 * (upper - lower) - place[d]);
+            }
+          places.push_back(place);
           records.emplace_back(fields.begin(), fields.end());
+          for (unsigned int d = 0; d < dim; ++d)
+            records.back().push_back(particle->get_location()[d]);
           records.back().push_back(particle->get_id());
         }
     if (Utilities::MPI::max<unsigned int>(far.size(), grid.communicator) == 0)
@@ -145,8 +157,11 @@ namespace impm
           IteratorFilters::LocallyOwnedCell())),
       grid.communicator);
     const GridTools::Cache<dim> cache(grid.triangulation, *grid.mapping);
-    const auto [cells, unit_places, indices, new_places, owners] =
+    const auto                  located =
       GridTools::distributed_compute_point_locations(cache, places, boxes);
+    const auto &cells   = std::get<0>(located);
+    const auto &indices = std::get<2>(located);
+    const auto &owners  = std::get<4>(located);
     std::map<unsigned int, std::vector<unsigned int>> wanted;
     for (unsigned int c = 0; c < cells.size(); ++c)
       for (unsigned int i = 0; i < indices[c].size(); ++i)
@@ -166,8 +181,15 @@ namespace impm
           auto               fields      = received.at(owner)[next[owner]++];
           const types::particle_index id = fields.back();
           fields.pop_back();
-          particles.insert_particle(new_places[c][i],
-                                    unit_places[c][i],
+          Point<dim> place, unit_place;
+          for (unsigned int d = dim; d-- > 0; fields.pop_back())
+            {
+              place[d] = fields.back();
+              unit_place[d] =
+                (place[d] - cells[c]->vertex(0)[d]) / cell_extent(cells[c], d);
+            }
+          particles.insert_particle(place,
+                                    unit_place,
                                     id,
                                     cells[c],
                                     make_array_view(std::as_const(fields)));

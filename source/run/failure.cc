@@ -3,6 +3,7 @@
 #include <impm/run/likely_causes.h>
 #include <impm/run/simulation.h>
 
+#include <algorithm>
 #include <numeric>
 
 // What a run says when it cannot go on.
@@ -17,7 +18,7 @@ namespace impm
     FailedStep step;
     step.failure     = failure;
     step.residuals   = residuals;
-    step.is_unstable = report.unstable > 0;
+    step.is_unstable = total.unstable + report.unstable > 0;
     step.are_plain   = scene.grid.method == GridMethod::mpm;
     step.smallest_J = step.largest_J = 1;
     for (unsigned int p = 0; p < points.size(); ++p)
@@ -30,15 +31,14 @@ namespace impm
     step.largest_J  = Utilities::MPI::max(step.largest_J, communicator);
     if (!grid.is_lagrangian)
       {
-        const auto now     = count_pieces(points,
+        const auto now = count_pieces(points,
                                       problem->footprints,
                                       *problem->discretization,
                                       scene.bodies.size());
-        step.pieces        = std::accumulate(now.begin(), now.end(), 0u);
-        step.pieces_before = std::accumulate(pieces.begin(), pieces.end(), 0u);
-        if (pieces.empty()) // as many as there are bodies
-          step.pieces_before =
-            now.size() - std::count(now.begin(), now.end(), 0u);
+        step.pieces    = std::accumulate(now.begin(), now.end(), 0u);
+        // As many as there are bodies with points.
+        step.pieces_before =
+          now.size() - std::count(now.begin(), now.end(), 0u);
         step.points_per_cell = points_per_cell(grid, points).smallest;
         step.drift           = deformation_drift(points);
         step.fullest         = fullest_cell(points);

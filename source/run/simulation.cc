@@ -322,7 +322,7 @@ namespace impm
             std::ostringstream where;
             where << "at t = " << time << " s, step " << report.step << ": "
                   << failure << ", and dt = " << dt
-                  << " s is below the smallest time step; " << explain(failure);
+                  << " s is below the smallest time step: " << explain(failure);
             throw ComputationError(where.str());
           }
       }

@@ -51,7 +51,7 @@ namespace impm
         where << "at t = " << time << " s, step " << report.step << ": "
               << failure << ", with damped steps, too: no stable equilibrium "
               << "is near (a body that is torn, has collapsed or that nothing "
-              << "holds, or a load beyond what it can bear); "
+              << "holds, or a load beyond what it can bear): "
               << explain(failure);
         throw ComputationError(where.str());
       }

@@ -14,7 +14,7 @@ namespace impm
     std::string         failure;   ///< of the last attempt
     std::vector<double> residuals; ///< of its iterations, over the scale
 
-    bool         is_unstable   = false; ///< the equilibrium that it begins from
+    bool         is_unstable   = false;         ///< an equilibrium of the run
     unsigned int pieces_before = 0, pieces = 0; ///< of all bodies
     double       points_per_cell = 1;           ///< smallest, by volume
     double       drift           = 0;           ///< see deformation_drift()

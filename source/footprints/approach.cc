@@ -109,9 +109,9 @@ namespace impm
   find_approach(const MaterialPoints<dim>  &points,
                 const Footprints<dim>      &footprints,
                 const Discretization<dim>  &discretization,
-                const StepConstraints<dim> &constraints,
-                const unsigned int          n_bodies)
+                const StepConstraints<dim> &constraints)
   {
+    const unsigned int n_bodies = points.n_bodies();
     // Carriers count behind the bodies.
     Touched<dim> touched(discretization);
     for (const auto &cell : footprints.cells)
@@ -137,6 +137,10 @@ namespace impm
     for (const auto &pair : meet)
       all.insert({pair.first, pair.second});
     Approach approach;
+    for (const auto &pair : meet)
+      approach.bodies_touch =
+        approach.bodies_touch ||
+        (pair.first < pair.second && pair.second < n_bodies);
     for (const double body : all)
       for (const double other : all)
         if (const Pair pair(body, other);

@@ -50,14 +50,14 @@ namespace impm
     const double               time,
     const double               dt,
     const Vector              &support)
-    : is_constrained(dim * discretization.node_positions.size(), false)
+    : faces(faces)
+    , grid(grid)
+    , rigid(rigid)
+    , is_constrained(dim * discretization.node_positions.size(), false)
     , carrier(is_constrained.size(), no_carrier)
     , wall(carrier)
     , increment(is_constrained.size())
-    , faces(faces)
-    , grid(grid)
     , discretization(discretization)
-    , rigid(rigid)
   {
     Vector carriers;
     discretization.initialize(carriers);

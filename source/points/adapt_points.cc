@@ -40,10 +40,10 @@ namespace impm
     result.smallest      = std::numeric_limits<double>::max();
     double       sum     = 0;
     unsigned int n_cells = 0, n_here = 0;
-    double       volume      = 0; ///< of the points of a cell
-    const bool   has_domains = points.layout.find("initial_domain").has_value();
+    double       volume = 0; ///< of the points of a cell
+    // 0 where points have none.
     const unsigned int domain =
-      has_domains ? points.layout.offset("initial_domain") : 0;
+      points.layout.find("initial_domain").value_or(0);
     Tensor<1, dim> lengths; ///< the same, along the axes
     const auto     finish = [&](const auto &cell) {
       double number = n_here;
@@ -73,7 +73,7 @@ namespace impm
           finish(cell);
         cell = here;
         volume += present_measure(points, p, particle.get_location());
-        if (has_domains)
+        if (domain > 0)
           {
             const double *fields = points.fields(p);
             const auto    F =

@@ -1,3 +1,4 @@
+#include <impm/footprints/approach.h>
 #include <impm/footprints/pieces.h>
 #include <impm/points/deformation_drift.h>
 #include <impm/run/likely_causes.h>
@@ -20,7 +21,6 @@ namespace impm
     step.residuals   = residuals;
     step.is_unstable = total.unstable + report.unstable > 0;
     step.are_plain   = scene.grid.method == GridMethod::mpm;
-    step.smallest_J = step.largest_J = 1;
     for (unsigned int p = 0; p < points.size(); ++p)
       {
         const double J  = determinant(deformation_gradient(points, p));
@@ -42,8 +42,12 @@ namespace impm
         step.points_per_cell = points_per_cell(grid, points).smallest;
         step.drift           = deformation_drift(points);
         step.fullest         = fullest_cell(points);
+        const auto approach  = find_approach(points,
+                                            problem->footprints,
+                                            *problem->discretization,
+                                            problem->constraints);
         step.bodies_touch =
-          bodies_touch(points, problem->footprints, *problem->discretization);
+          approach.bodies_touch || approach.of_bodies == Distance::near;
       }
     return likely_causes(step);
   }

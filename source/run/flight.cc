@@ -66,15 +66,14 @@ namespace impm
   } // namespace
 
   template <int dim>
-  Flight<dim>::Flight(const MaterialPoints<dim>         &points,
-                      const std::vector<Tensor<1, dim>> &increments,
-                      const BackgroundGrid<dim>         &grid,
-                      const Faces<dim>                  &faces,
-                      const RigidBodies<dim>            &rigid,
-                      const double                       from,
-                      const double                       to)
+  Flight<dim>::Flight(const StepProblem<dim>            &problem,
+                      const MaterialPoints<dim>         &points,
+                      const std::vector<Tensor<1, dim>> &increments)
     : group(points.n_bodies())
   {
+    const auto        &faces = problem.constraints.faces;
+    const auto        &grid  = problem.constraints.grid;
+    const auto        &rigid = problem.constraints.rigid;
     const unsigned int n = group.size(), n_rigid = rigid.bodies.size();
     double             extent = 0;
     for (const auto &cell : grid.triangulation.active_cell_iterators())
@@ -96,7 +95,11 @@ namespace impm
         {
           const auto place = particle.get_location();
           boxes.add(n + b, place, 0);
-          boxes.add(n + b, place + rigid.bodies[b].displacement(from, to), 0);
+          boxes.add(n + b,
+                    place +
+                      rigid.bodies[b].displacement(problem.time,
+                                                   problem.time + problem.dt),
+                    0);
         }
     boxes.exchange(grid.communicator);
 

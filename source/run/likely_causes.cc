@@ -1,4 +1,4 @@
-#include <impm/points/point_layout.h>
+#include <impm/base/names.h>
 #include <impm/run/likely_causes.h>
 
 #include <algorithm>
@@ -27,48 +27,52 @@ namespace impm
   std::string
   likely_causes(const FailedStep &step)
   {
-    std::ostringstream text;
-    const auto         add = [&](const std::string &name) -> std::ostream         &{
-      return text << (text.str().empty() ? "likely " : ", or ") << name;
-    };
     const auto failed_by = [&](const std::string &words) {
       return step.failure.find(words) != std::string::npos;
     };
+    std::vector<std::string> causes;
+    const auto               add = [&](const auto &...parts) {
+      std::ostringstream text;
+      (text << ... << parts);
+      causes.push_back(text.str());
+    };
     if (step.is_unstable)
-      add(
-        "a limit point: the equilibrium before is not stable, so that there is "
-        "none near at more load");
+      add("a limit point: the run has met equilibria that are not stable, and "
+          "may be beyond the load that can be borne");
     if (step.pieces > step.pieces_before || step.points_per_cell < 0.5)
-      add("a tear: ") << "material has parted, " << step.pieces
-                      << " pieces hang together and a cell has "
-                      << step.points_per_cell
-                      << " points (let points split, or begin with more)";
+      add("a tear: material has parted, ",
+          step.pieces,
+          " pieces hang together and a cell has ",
+          step.points_per_cell,
+          " points (let points split, or begin with more)");
     if (failed_by("whole cell") || (step.are_plain && step.drift > 0.1))
-      add("crossing: ") << "points go far through the grid, and their "
-                           "deformation has drifted from how they lie by "
-                        << 100 * step.drift
-                        << " % (shorter steps, or boxes: Grid/Method = GIMP)";
+      add("crossing: points go far through the grid, and their deformation has "
+          "drifted from how they lie by ",
+          100 * step.drift,
+          " % (shorter steps, or boxes: Grid/Method = GIMP)");
     if (step.fullest > 1.3)
-      add("an overfull cell: ")
-        << "points in one have " << step.fullest
-        << " times its volume, so that material lies in itself (a finer grid "
-           "where it folds)";
+      add("an overfull cell: points in one have ",
+          step.fullest,
+          " times its volume, so that material lies in itself (a finer grid "
+          "where it folds)");
     if (step.bodies_touch)
-      add("contact: ") << "two bodies share nodes, or come to (shorter steps "
-                          "as they meet)";
+      add(
+        "contact: two bodies share nodes, or nearly do (shorter steps as they "
+        "meet)");
     if (failed_by("inside out") || step.smallest_J < 0.1 || step.largest_J > 10)
-      add("the material: ")
-        << "points have " << step.smallest_J << " to " << step.largest_J
-        << " times their volume, and turn inside out beyond what the law "
-           "bears";
+      add("the material: points have ",
+          step.smallest_J,
+          " to ",
+          step.largest_J,
+          " times their volume, and turn inside out beyond what the law bears");
     if (stays_at_round_off(step.residuals))
-      add("a tolerance below round-off: ")
-        << "the residual stays at " << step.residuals.back()
-        << " ('Newton tolerance')";
-    return text.str().empty() ?
-             "no sign of the usual causes: shorter steps, or a "
-             "finer grid, may tell" :
-             text.str();
+      add("a tolerance below round-off: the residual stays at ",
+          step.residuals.back(),
+          " ('Newton tolerance')");
+    return causes.empty() ?
+             "no sign of the usual causes: shorter steps, or a finer grid, may "
+             "tell" :
+             "likely " + join(causes, ", or ");
   }
 
   template <int dim>
@@ -110,48 +114,8 @@ namespace impm
     return Utilities::MPI::max(fullest, points.communicator);
   }
 
-  template <int dim>
-  bool
-  bodies_touch(const MaterialPoints<dim> &points,
-               const Footprints<dim>     &footprints,
-               const Discretization<dim> &discretization)
-  {
-    Vector lowest, highest; // body at a node, one more, in its first component
-    discretization.initialize(lowest);
-    discretization.initialize(highest);
-    const double none = points.n_bodies() + 1;
-    for (unsigned int i = 0; i < discretization.node_positions.size(); ++i)
-      lowest.local_element(dim * i) = none;
-    for (const auto &cell : footprints.cells)
-      for (unsigned int e = cell.begin; e < cell.end; ++e)
-        for (unsigned int n = 0; n < Footprints<dim>::n_nodes; ++n)
-          if (footprints.touches(e, n))
-            {
-              const double       body = points.body(footprints.point[e]) + 1;
-              const unsigned int i    = dim * cell.nodes[n];
-              lowest.local_element(i) = std::min(lowest.local_element(i), body);
-              highest.local_element(i) =
-                std::max(highest.local_element(i), body);
-            }
-    lowest.compress(VectorOperation::min);
-    highest.compress(VectorOperation::max);
-    bool touch = false;
-    for (unsigned int i = 0; i < highest.locally_owned_size(); i += dim)
-      touch = touch || (highest.local_element(i) > 0 &&
-                        lowest.local_element(i) < highest.local_element(i));
-    return Utilities::MPI::max(touch ? 1 : 0, discretization.communicator) == 1;
-  }
-
   template double
   fullest_cell(const MaterialPoints<2> &);
   template double
   fullest_cell(const MaterialPoints<3> &);
-  template bool
-  bodies_touch(const MaterialPoints<2> &,
-               const Footprints<2> &,
-               const Discretization<2> &);
-  template bool
-  bodies_touch(const MaterialPoints<3> &,
-               const Footprints<3> &,
-               const Discretization<3> &);
 } // namespace impm

@@ -96,8 +96,6 @@ namespace impm
                       std::vector<Tensor<1, dim>> &increments,
                       const BackgroundGrid<dim>   &grid,
                       const MaterialPoints<dim>   &points,
-                      const RigidBodies<dim>      &rigid,
-                      const Faces<dim>            &faces,
                       const GridPolicy<dim>       &policy,
                       const double                 longest_in_cells)
   {
@@ -166,13 +164,7 @@ namespace impm
     const double longest = 0.95 * longest_in_cells;
     if (motion.in_cells > longest && !grid.keeps_motion)
       {
-        const Flight<dim> flight(points,
-                                 increments,
-                                 grid,
-                                 faces,
-                                 rigid,
-                                 problem.time,
-                                 problem.time + problem.dt);
+        const Flight<dim> flight(problem, points, increments);
         motion.in_cells = largest_in_cells(
           points, [&](const unsigned int point, const Point<dim> &place) {
             return increments[point] -

@@ -152,11 +152,11 @@ namespace impm
   {
     if (grid.is_lagrangian)
       return;
-    auto now         = count_pieces(points,
+    auto now      = count_pieces(points,
                             problem->footprints,
                             *problem->discretization,
                             scene.bodies.size());
-    since_row.pieces = std::accumulate(now.begin(), now.end(), 0u);
+    report.pieces = std::accumulate(now.begin(), now.end(), 0u);
     for (unsigned int b = 0; b < pieces.size(); ++b)
       if (now[b] > pieces[b])
         {
@@ -174,7 +174,6 @@ namespace impm
   void
   Simulation<dim>::write_row()
   {
-    watch_pieces();
     history.write(since_row);
     if (history.last_density().smallest < 1)
       {

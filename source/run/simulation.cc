@@ -221,10 +221,10 @@ namespace impm
       return solution.failure;
     problem->footprints.move_points(result.increment, increments);
     // Of one step, as ever, unless the grid has moved.
-    const double most   = is_off_grid() ? scene.grid.reset_motion :
-                                          std::max(1., scene.grid.reset_motion);
-    const auto   motion = motion_through_grid(
-      *problem, increments, grid, points, rigid, scene.faces, *policy, most);
+    const double most = is_off_grid() ? scene.grid.reset_motion :
+                                        std::max(1., scene.grid.reset_motion);
+    const auto   motion =
+      motion_through_grid(*problem, increments, grid, points, *policy, most);
     if (!motion.forbidden.empty())
       return motion.forbidden;
     off_grid.in_cells  = motion.in_cells;
@@ -247,8 +247,7 @@ namespace impm
         if (!grid.is_lagrangian)
           figures.in_cells =
             std::max(figures.in_cells,
-                     way_over_allowed(
-                       *problem, increments, grid, points, rigid, scene.faces));
+                     way_over_allowed(*problem, increments, points));
       }
     return check_energy();
   }
@@ -341,15 +340,17 @@ namespace impm
     report.uncertain_work     = work.uncertain;
     history.take_figures(*problem, end_forces);
     watch_faces();
+    // While points are in the order of their footprints.
+    if (row_is_due(report.step, time + report.dt))
+      watch_pieces();
     report.damped     = jump.is_on();
     report.step_error = figures.error;
     if (control.is_wrong(figures))
-      warn("step error",
-           "steps as short as they may be lose more than the 'Error tolerance' "
-           "of " +
-             Utilities::to_string(scene.time.error_tolerance) +
-             " by their length: a motion that sets in at once, or a 'Smallest "
-             "time step' that is too long");
+      warn("step control",
+           "steps are as short as they may be, and too long: " +
+             control.why_too_long(figures) +
+             " (a motion that sets in at once, or a 'Smallest time step' that "
+             "is too large)");
     commit();
     control.accept(figures, !jump.is_on());
     jump.end_step(off_grid.in_cells, control.step_size() >= scene.time.step);
@@ -445,10 +446,6 @@ namespace impm
       replace_file(directory + "/parameters.prm", parameters);
     history.open(directory, restart);
     const double interval = scene.output.picture_interval;
-    const auto   is_over  = [&]() {
-      return time >= scene.time.end * (1 - 1e-12) ||
-             total.step >= scene.time.largest_number_of_steps;
-    };
     // A long step may have passed several.
     const auto picture_after = [&](const double now) {
       return interval > 0 ?
@@ -460,7 +457,7 @@ namespace impm
       {
         if (first)
           pictures.write_records(directory);
-        if (is_over())
+        if (is_over(total.step, time))
           console.message("the run is done; a later end time, or more steps, "
                           "would let it go on");
       }
@@ -474,12 +471,12 @@ namespace impm
       }
     try
       {
-        while (!is_over())
+        while (!is_over(total.step, time))
           {
             advance();
             since_row.append(report);
-            const bool last = is_over();
-            if (last || report.step % scene.output.row_steps == 0)
+            const bool last = is_over(total.step, time);
+            if (row_is_due(total.step, time))
               write_row();
             const bool due = interval > 0 ?
                                time >= next_picture * (1 - 1e-9) :

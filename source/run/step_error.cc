@@ -82,26 +82,16 @@ namespace impm
   double
   way_over_allowed(const StepProblem<dim>            &problem,
                    const std::vector<Tensor<1, dim>> &increments,
-                   const BackgroundGrid<dim>         &grid,
-                   const MaterialPoints<dim>         &points,
-                   const RigidBodies<dim>            &rigid,
-                   const Faces<dim>                  &faces)
+                   const MaterialPoints<dim>         &points)
   {
     const auto approach = find_approach(points,
                                         problem.footprints,
                                         *problem.discretization,
-                                        problem.constraints,
-                                        points.n_bodies());
+                                        problem.constraints);
     if (approach.of_bodies == Distance::none &&
         approach.to_walls == Distance::none)
       return 0;
-    const Flight<dim> flight(points,
-                             increments,
-                             grid,
-                             faces,
-                             rigid,
-                             problem.time,
-                             problem.time + problem.dt);
+    const Flight<dim> flight(problem, points, increments);
     // In cells. From further away, what moves by half of one does not meet.
     const auto longest = [](const Distance distance, const bool ways_cross) {
       if (distance == Distance::near)

@@ -33,8 +33,7 @@ namespace impm
   double
   StepControl::part_for(const StepFigures &step) const
   {
-    if (std::max(step.error, step.in_cells) <= tolerated ||
-        dt < 1.001 * smallest())
+    if (!is_wrong(step) || dt < 1.001 * smallest())
       return 1;
     return std::min(1.,
                     std::max(std::clamp(factor_for(step), 0.02, 0.7),

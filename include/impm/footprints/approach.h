@@ -19,6 +19,7 @@ namespace impm
   {
     Distance of_bodies = Distance::none; ///< from each other
     Distance to_walls  = Distance::none; ///< faces and rigid bodies that hold
+    bool     bodies_touch = false;       ///< any two share a node
   };
 
   /**
@@ -31,8 +32,7 @@ namespace impm
   find_approach(const MaterialPoints<dim>  &points,
                 const Footprints<dim>      &footprints,
                 const Discretization<dim>  &discretization,
-                const StepConstraints<dim> &constraints,
-                unsigned int                n_bodies);
+                const StepConstraints<dim> &constraints);
 } // namespace impm
 
 #endif

@@ -78,6 +78,11 @@ namespace impm
 
     static constexpr unsigned int no_carrier = -1;
 
+    // What may hold nodes.
+    const Faces<dim>          &faces;
+    const BackgroundGrid<dim> &grid;
+    const RigidBodies<dim>    &rigid;
+
     /** Whether a local element is constrained. */
     std::vector<char> is_constrained;
 
@@ -102,10 +107,7 @@ namespace impm
     double
     prescribed(unsigned int index, double time, double dt) const;
 
-    const Faces<dim>          &faces;
-    const BackgroundGrid<dim> &grid;
     const Discretization<dim> &discretization;
-    const RigidBodies<dim>    &rigid;
   };
 } // namespace impm
 

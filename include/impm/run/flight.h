@@ -1,11 +1,7 @@
 #ifndef impm_run_flight_h
 #define impm_run_flight_h
 
-#include <deal.II/base/bounding_box.h>
-
-#include <impm/grid/rigid_bodies.h>
-#include <impm/input/sections/boundary_conditions.h>
-#include <impm/points/material_points.h>
+#include <impm/balance/step_problem.h>
 
 #include <vector>
 
@@ -21,15 +17,10 @@ namespace impm
   class Flight
   {
   public:
-    /** Of points with their increments (m) in a step between two times.
-     * Collective. */
-    Flight(const MaterialPoints<dim>                 &points,
-           const std::vector<dealii::Tensor<1, dim>> &increments,
-           const BackgroundGrid<dim>                 &grid,
-           const Faces<dim>                          &faces,
-           const RigidBodies<dim>                    &rigid,
-           double                                     from,
-           double                                     to);
+    /** Of points with their increments (m) in a step. Collective. */
+    Flight(const StepProblem<dim>                    &problem,
+           const MaterialPoints<dim>                 &points,
+           const std::vector<dealii::Tensor<1, dim>> &increments);
 
     /** Whether the way of a body comes near that of none but its group, no
      * rigid body, and no face that holds nodes. */

@@ -1,7 +1,7 @@
 #ifndef impm_run_likely_causes_h
 #define impm_run_likely_causes_h
 
-#include <impm/balance/step_problem.h>
+#include <impm/points/material_points.h>
 
 #include <string>
 #include <vector>
@@ -21,7 +21,7 @@ namespace impm
     bool         are_plain       = false;       ///< points without boxes
     double       fullest         = 0; ///< volume of points over that of a cell
     double       smallest_J = 1, largest_J = 1; ///< of a point
-    bool         bodies_touch = false;          ///< share a node
+    bool         bodies_touch = false;          ///< share a node, or nearly do
   };
 
   /** What it may have failed for, for people: the likely ones, in their order,
@@ -34,13 +34,6 @@ namespace impm
   template <int dim>
   double
   fullest_cell(const MaterialPoints<dim> &points);
-
-  /** Whether points of two bodies touch a node. Collective. */
-  template <int dim>
-  bool
-  bodies_touch(const MaterialPoints<dim> &points,
-               const Footprints<dim>     &footprints,
-               const Discretization<dim> &discretization);
 } // namespace impm
 
 #endif

@@ -40,8 +40,6 @@ namespace impm
                       std::vector<dealii::Tensor<1, dim>> &increments,
                       const BackgroundGrid<dim>           &grid,
                       const MaterialPoints<dim>           &points,
-                      const RigidBodies<dim>              &rigid,
-                      const Faces<dim>                    &faces,
                       const GridPolicy<dim>               &policy,
                       double                               longest_in_cells);
 } // namespace impm

@@ -155,6 +155,21 @@ namespace impm
     void
     report_instability(const Vector &mode);
 
+    /** Whether the run ends after a step, at a time. */
+    bool
+    is_over(const unsigned int step, const double at) const
+    {
+      return at >= scene.time.end * (1 - 1e-12) ||
+             step >= scene.time.largest_number_of_steps;
+    }
+
+    /** Whether a step, to a time, ends with a row of the history. */
+    bool
+    row_is_due(const unsigned int step, const double at) const
+    {
+      return is_over(step, at) || step % scene.output.row_steps == 0;
+    }
+
     /** Counts the pieces of the bodies, and tells when one has come apart.
      * Collective. */
     void

@@ -32,10 +32,7 @@ namespace impm
   double
   way_over_allowed(const StepProblem<dim>                    &problem,
                    const std::vector<dealii::Tensor<1, dim>> &increments,
-                   const BackgroundGrid<dim>                 &grid,
-                   const MaterialPoints<dim>                 &points,
-                   const RigidBodies<dim>                    &rigid,
-                   const Faces<dim>                          &faces);
+                   const MaterialPoints<dim>                 &points);
 } // namespace impm
 
 #endif

@@ -98,11 +98,11 @@ namespace impm
     std::string
     why_too_long(const StepFigures &step) const;
 
-    /** Whether a step that may stand loses too much. */
+    /** Whether a step loses too much, or goes too far. */
     bool
     is_wrong(const StepFigures &step) const
     {
-      return step.error > tolerated;
+      return std::max(step.error, step.in_cells) > tolerated;
     }
 
     /** The step was made: grow, if it may, after cuts back to the nominal step

@@ -36,8 +36,7 @@ namespace
     return find_approach(model.points,
                          model.problem->footprints,
                          *model.problem->discretization,
-                         model.problem->constraints,
-                         model.scene.bodies.size());
+                         model.problem->constraints);
   }
 } // namespace
 
@@ -49,6 +48,8 @@ TEST(ApproachMpi, OfBodies)
   for (const auto &grid : {Overrides{}, Overrides{"Grid/Cells=8, 8"} + refined})
     {
       EXPECT_EQ(approach(0, 0, grid).of_bodies, Distance::none);
+      EXPECT_TRUE(approach(0, 0, grid).bodies_touch);
+      EXPECT_FALSE(approach(2, 0, grid).bodies_touch);
       EXPECT_EQ(approach(2, 0, grid).of_bodies, Distance::near);
       EXPECT_EQ(approach(7, 0, grid).of_bodies, Distance::far);
     }

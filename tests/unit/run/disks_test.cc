@@ -36,6 +36,7 @@ TEST(DisksMpi, FlyCollideAndNeverGainEnergy)
           EXPECT_NEAR(columns.at("momentum_x")[i], 0, 1e-12 * 130 * speed);
           if (time[i] > 50)
             continue;
+          EXPECT_EQ(columns.at("pieces")[i], 2);
           EXPECT_NEAR(columns.at("lower_velocity")[i], speed, 1e-12 * speed);
           EXPECT_NEAR(columns.at("lower_displacement")[i],
                       speed * time[i],

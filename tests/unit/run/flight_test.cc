@@ -77,6 +77,29 @@ TEST(FlightMpi, ABlockThatWillLandDoesNot)
 }
 
 
+// Side by side they fly each for itself, though their points mix in the order
+// of the cells, and stay in one piece each.
+TEST(FlightMpi, TwoBlocksSideBySide)
+{
+  const auto columns = run_file("extreme/flight",
+                                {"Geometry/Shapes=block, other",
+                                 "Geometry/block/Lower corner=0.1, 5.4",
+                                 "Geometry/block/Upper corner=0.4, 5.8",
+                                 "Geometry/other/Kind=box",
+                                 "Geometry/other/Lower corner=0.8, 5.4",
+                                 "Geometry/other/Upper corner=1.1, 5.8",
+                                 "Bodies/Names=block, other",
+                                 "Bodies/other/Shape=other",
+                                 "Bodies/other/Material=stiff",
+                                 "Bodies/other/Points per cell=2",
+                                 "Bodies/other/Velocity=0; 0.9"});
+  EXPECT_EQ(sum(columns.at("step_cuts")), 0);
+  for (const double pieces : columns.at("pieces"))
+    EXPECT_EQ(pieces, 2);
+  EXPECT_NEAR(columns.at("fall").back(), 9.81 / 2, 1e-12);
+}
+
+
 // Nothing changes where the grid is adapted around it.
 TEST(FlightMpi, ABlockFallsThroughAnAdaptiveGrid)
 {

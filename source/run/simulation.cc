@@ -9,6 +9,7 @@
 #include <impm/run/simulation.h>
 #include <impm/run/step_error.h>
 #include <impm/scene/scene.h>
+#include <impm/scene/shared_cells.h>
 #include <impm/scene/thin_parts.h>
 
 #include <algorithm>
@@ -466,6 +467,8 @@ namespace impm
         warn_of_instability();
         for (const auto &sentence : find_thin_parts(scene.bodies, grid, points))
           warn(sentence, sentence);
+        if (const auto sentence = find_shared_cells(points); !sentence.empty())
+          warn("shared cells", sentence);
         if (scene.output.pictures)
           picture(false);
       }

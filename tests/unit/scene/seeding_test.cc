@@ -1,3 +1,5 @@
+#include <impm/scene/shared_cells.h>
+
 #include <gtest/gtest.h>
 
 #include <array>
@@ -198,6 +200,28 @@ TEST(SeedingMpi, WholeCellsServeOneMaterial)
                cut + inclusion("0.3") + Overrides{whole[1]},
                "Bodies/block/Shape",
                {"overlap", "'ball'"});
+}
+
+
+// Two materials in one cell are told of, one in two bodies is not.
+TEST(SeedingMpi, CellsOfTwoMaterialsAreTold)
+{
+  const Overrides other = {"Materials/Names=rubber, stone",
+                           "Materials/stone/Density=1",
+                           "Materials/stone/Law=log-strain elastic",
+                           "Materials/stone/Young's modulus=100",
+                           "Bodies/ball/Material=stone"};
+  const Overrides whole = {"Bodies/block/Surface=whole cells",
+                           "Bodies/ball/Surface=whole cells"};
+  const auto      told  = [&](const Overrides &overrides) {
+    return find_shared_cells(
+      Model<2>(block_scene("plane strain"), inclusion("0.3") + overrides)
+        .points);
+  };
+  EXPECT_EQ(told(cut), "");
+  EXPECT_EQ(told(other + whole), "");
+  const auto text = told(cut + other);
+  EXPECT_NE(text.find("'block' and 'ball'"), std::string::npos) << text;
 }
 
 

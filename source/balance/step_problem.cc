@@ -86,7 +86,8 @@ namespace impm
                   rigid,
                   time,
                   dt,
-                  norm ? norm->unit_strain_forces : gathered.mass)
+                  norm ? norm->unit_strain_forces : gathered.mass,
+                  TouchedNodes<dim>(grid, *discretization, points))
     , response(points,
                dt,
                integrator.has_stress_in_the_middle(),

@@ -49,7 +49,8 @@ namespace impm
     const RigidBodies<dim>    &rigid,
     const double               time,
     const double               dt,
-    const Vector              &support)
+    const Vector              &support,
+    const TouchedNodes<dim>   &touched)
     : faces(faces)
     , grid(grid)
     , rigid(rigid)
@@ -59,12 +60,8 @@ namespace impm
     , increment(is_constrained.size())
     , discretization(discretization)
   {
-    Vector carriers;
-    discretization.initialize(carriers);
-    hold_faces(carriers);
-    hold_rigid_bodies(carriers);
-    carriers.compress(VectorOperation::max);
-    carriers.update_ghost_values();
+    const Vector carriers = find_carriers(&touched),
+                 walls    = find_carriers(nullptr);
 
     const auto &masters = discretization.numbering->masters;
     for (unsigned int i = 0; i < is_constrained.size(); ++i)
@@ -73,18 +70,35 @@ namespace impm
         const bool used   = support.local_element(i) > 0;
         const bool held   = carriers.local_element(i) > 0;
         is_constrained[i] = hangs || !used || held;
-        if (held)
-          wall[i] = static_cast<unsigned int>(carriers.local_element(i)) - 1;
+        if (walls.local_element(i) > 0)
+          wall[i] = static_cast<unsigned int>(walls.local_element(i)) - 1;
         if (hangs || !used || !held)
           continue;
-        carrier[i]   = wall[i];
+        carrier[i]   = static_cast<unsigned int>(carriers.local_element(i)) - 1;
         increment[i] = prescribed(i, time, dt);
+        // What has not reached its face yet comes to it in this step.
+        if (const unsigned int f = carrier[i]; f < 2 * dim && i % dim == f / 2)
+          increment[i] += (f % 2 == 0 ? -1 : 1) * touched.gap(i);
       }
   }
 
   template <int dim>
+  Vector
+  StepConstraints<dim>::find_carriers(const TouchedNodes<dim> *touched) const
+  {
+    Vector carriers;
+    discretization.initialize(carriers);
+    hold_faces(touched, carriers);
+    hold_rigid_bodies(carriers);
+    carriers.compress(VectorOperation::max);
+    carriers.update_ghost_values();
+    return carriers;
+  }
+
+  template <int dim>
   void
-  StepConstraints<dim>::hold_faces(Vector &carriers) const
+  StepConstraints<dim>::hold_faces(const TouchedNodes<dim> *touched,
+                                   Vector                  &carriers) const
   {
     for (const auto &cell :
          discretization.dof_handler().active_cell_iterators())
@@ -92,12 +106,18 @@ namespace impm
         for (const auto &face : cell->face_iterators())
           if (face->at_boundary())
             for (const unsigned int v : face->vertex_indices())
-              for (unsigned int c = 0; c < dim; ++c)
-                if (faces[face->boundary_id()].constrained[c])
-                  {
-                    double &value = carriers(face->vertex_dof_index(v, c));
-                    value         = std::max(value, face->boundary_id() + 1.);
-                  }
+              {
+                const unsigned int f = face->boundary_id();
+                if (touched &&
+                    !touched->are_held(face->vertex_dof_index(v, f / 2)))
+                  continue;
+                for (unsigned int c = 0; c < dim; ++c)
+                  if (faces[f].constrained[c])
+                    {
+                      double &value = carriers(face->vertex_dof_index(v, c));
+                      value         = std::max(value, f + 1.);
+                    }
+              }
   }
 
   template <int dim>

@@ -229,6 +229,7 @@ namespace impm
     , offset_affine(layout.find("velocity_gradient_x").value_or(0))
     , offset_stress(layout.find("stress").value_or(0))
     , offset_initial_position(layout.find("initial_position").value_or(0))
+    , offset_touched(layout.find("touched_faces").value_or(0))
     , history_layout(history)
     , communicator(grid.communicator)
   {
@@ -259,6 +260,9 @@ namespace impm
             values[*offset] = -1; // none
           if (const auto offset = layout.find("initial_domain"))
             copy(seed.domain, values + *offset);
+          // All faces, as far as they are there.
+          if (offset_touched > 0)
+            values[offset_touched] = (1u << (2 * dim)) - 1;
           for (const auto &traction : tractions)
             if (traction.body == body.name)
               values[layout.offset(traction_field(traction))] =

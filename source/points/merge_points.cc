@@ -119,6 +119,10 @@ namespace impm
                (F - G).norm() :
                std::abs(determinant(F) - determinant(G))) > tolerance)
           return false;
+        if (points.offset_touched > 0 &&
+            points.fields(p)[points.offset_touched] !=
+              points.fields(q)[points.offset_touched])
+          return false;
         for (unsigned int i = 0; i < scales.size(); ++i)
           if (distance(points.history_layout.fields()[i], p, q) >
               tolerance * scales[i])

@@ -1,3 +1,4 @@
+#include <impm/footprints/touching.h>
 #include <impm/points/point_domains.h>
 #include <impm/run/flight.h>
 #include <impm/run/motion_limits.h>
@@ -95,7 +96,7 @@ namespace impm
   motion_through_grid(const StepProblem<dim>      &problem,
                       std::vector<Tensor<1, dim>> &increments,
                       const BackgroundGrid<dim>   &grid,
-                      const MaterialPoints<dim>   &points,
+                      MaterialPoints<dim>         &points,
                       const GridPolicy<dim>       &policy,
                       const double                 longest_in_cells)
   {
@@ -117,7 +118,11 @@ namespace impm
         stretch[f]          = (end[f] - placed) / (placed - fixed[f]);
       }
 
-    GridMotion   motion;
+    GridMotion motion;
+    motion.lands = !grid.is_lagrangian &&
+                   land(problem.constraints.faces, end, increments, points);
+    if (motion.lands)
+      return motion;
     unsigned int p = 0;
     for (const auto &particle : points.sorted.particles)
       {

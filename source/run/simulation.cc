@@ -2,6 +2,7 @@
 
 #include <impm/base/exceptions.h>
 #include <impm/base/files.h>
+#include <impm/footprints/touching.h>
 #include <impm/footprints/transfer.h>
 #include <impm/run/motion_limits.h>
 #include <impm/run/run_directory.h>
@@ -226,6 +227,12 @@ namespace impm
                                         std::max(1., scene.grid.reset_motion);
     const auto   motion =
       motion_through_grid(*problem, increments, grid, points, *policy, most);
+    if (motion.lands)
+      {
+        console.detail("  points land on a face at t = " +
+                       std::to_string(time));
+        return attempt(dt);
+      }
     if (!motion.forbidden.empty())
       return motion.forbidden;
     off_grid.in_cells  = motion.in_cells;
@@ -263,7 +270,10 @@ namespace impm
       resample();
     adapt();
     if (!grid.is_moved())
-      builder.remember(points);
+      {
+        builder.remember(points);
+        remember_touching(scene.faces, grid, points);
+      }
     for (double dt = control.begin(time, step_unit());;)
       {
         std::string failure = attempt(dt);
@@ -279,6 +289,7 @@ namespace impm
                    Utilities::to_string(scene.grid.reset_motion) + " cells");
             reset_grid();
             builder.remember(points);
+            remember_touching(scene.faces, grid, points);
             continue;
           }
         // Nodes must not pass into a rigid body: the first one lands on it.

@@ -1,5 +1,6 @@
 #include <impm/balance/terms/loads.h>
 #include <impm/footprints/footprint_builder.h>
+#include <impm/footprints/touching.h>
 #include <impm/scene/scene.h>
 
 #include <boost/algorithm/cxx11/any_of.hpp>
@@ -155,6 +156,7 @@ namespace impm
       layout.add("initial_domain", Kind::vector);
 
     FootprintBuilder<dim>::add_fields(scene.grid, layout);
+    add_touching_field(scene.faces, scene.grid, layout);
     for (const auto &traction : scene.loads.tractions)
       layout.add(traction_field(traction), Kind::scalar);
 

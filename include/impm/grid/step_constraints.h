@@ -1,6 +1,7 @@
 #ifndef impm_grid_step_constraints_h
 #define impm_grid_step_constraints_h
 
+#include <impm/footprints/touching.h>
 #include <impm/grid/rigid_bodies.h>
 #include <impm/input/sections/boundary_conditions.h>
 
@@ -29,7 +30,7 @@ namespace impm
   public:
     /**
      * For the step from `time` to `time + dt`. `support` is positive where a
-     * node that is not hanging has material; its ghosts are up to date.
+     * node that is not hanging has material, its ghosts are up to date.
      * Collective.
      */
     StepConstraints(const Faces<dim>          &faces,
@@ -38,7 +39,8 @@ namespace impm
                     const RigidBodies<dim>    &rigid,
                     double                     time,
                     double                     dt,
-                    const Vector              &support);
+                    const Vector              &support,
+                    const TouchedNodes<dim>   &touched);
 
     /** Writes what is prescribed into `u`, zero on unused nodes. Collective. */
     void
@@ -96,9 +98,13 @@ namespace impm
     std::vector<double> increment;
 
   private:
-    // Where they hold a value, it is at least the number of the carrier plus 1.
+    /** The number, plus 1, of what holds each value; faces hold all of their
+     * nodes, or those that are touched. Collective. */
+    Vector
+    find_carriers(const TouchedNodes<dim> *touched) const;
+
     void
-    hold_faces(Vector &carriers) const;
+    hold_faces(const TouchedNodes<dim> *touched, Vector &carriers) const;
 
     void
     hold_rigid_bodies(Vector &carriers) const;

@@ -232,7 +232,7 @@ namespace impm
     // where there are no velocities. The affine velocity is a matrix by
     // rows, d v_i / d x_j; the stress is what the force at t_n comes from, tau.
     const unsigned int offset_velocity, offset_rate, offset_acceleration,
-      offset_affine, offset_stress, offset_initial_position;
+      offset_affine, offset_stress, offset_initial_position, offset_touched;
     /** Within the history: offsets count from offset_history. */
     const PointLayout history_layout;
     const MPI_Comm    communicator;

@@ -14,6 +14,8 @@ namespace impm
   {
     /** Why the increment must not be used; empty if it may. */
     std::string forbidden;
+    /** Whether points come to touch a face: the step is to be solved anew. */
+    bool lands = false;
     /** Largest since points were sorted into cells, in extents of a cell; of
      * bodies that fly freely and far, with respect to their rigid motion. */
     double in_cells = 0;
@@ -39,7 +41,7 @@ namespace impm
   motion_through_grid(const StepProblem<dim>              &problem,
                       std::vector<dealii::Tensor<1, dim>> &increments,
                       const BackgroundGrid<dim>           &grid,
-                      const MaterialPoints<dim>           &points,
+                      MaterialPoints<dim>                 &points,
                       const GridPolicy<dim>               &policy,
                       double                               longest_in_cells);
 } // namespace impm

@@ -1,0 +1,218 @@
+#include <impm/footprints/footprint_builder.h>
+#include <impm/footprints/touching.h>
+
+#include <cmath>
+#include <limits>
+
+namespace impm
+{
+  using namespace dealii;
+
+  namespace
+  {
+    // Cells between a point and a face that it begins or ceases to touch.
+    constexpr double closest = 0.1, farthest = 0.4;
+
+    // Of what a point carries: touches face f, or lands there in this step.
+    constexpr unsigned int
+    touches(const unsigned int face)
+    {
+      return 1u << face;
+    }
+
+    template <int dim>
+    constexpr unsigned int
+    lands(const unsigned int face)
+    {
+      return 1u << (2 * dim + face);
+    }
+
+    template <int dim>
+    unsigned int
+    bits_of(const MaterialPoints<dim> &points, const unsigned int p)
+    {
+      return static_cast<unsigned int>(points.fields(p)[points.offset_touched]);
+    }
+
+    /** Half of what a point takes up along an axis in its cell (m): of its box,
+     * or of one that is shaped like the cell and has its volume. */
+    template <int dim, typename Cell>
+    double
+    half_extent(const MaterialPoints<dim> &points,
+                const unsigned int         p,
+                const Cell                &cell,
+                const unsigned int         axis)
+    {
+      if (const auto domain = points.layout.find("initial_domain"))
+        return half_extents(points, p, *domain, true)[axis];
+      double of_cell = 1;
+      for (unsigned int d = 0; d < dim; ++d)
+        of_cell *= cell_extent(cell, d);
+      if (points.layout.geometry == GeometryKind::axisymmetric)
+        of_cell *= 2 * numbers::PI * cell->center()[0];
+      const double volume = points.initial_volume(p) *
+                            determinant(points.layout.load_tensor(
+                              points.fields(p) + points.offset_deformation));
+      return 0.5 * cell_extent(cell, axis) *
+             std::pow(volume / of_cell, 1. / dim);
+    }
+
+    /** Between the box of a point, at `place`, and a face at `face_position`
+     * (m). */
+    template <int dim, typename Cell>
+    double
+    gap_to_face(const MaterialPoints<dim> &points,
+                const unsigned int         p,
+                const Cell                &cell,
+                const unsigned int         face,
+                const Point<dim>          &place,
+                const double               face_position)
+    {
+      return (face % 2 == 0 ? 1 : -1) * (place[face / 2] - face_position) -
+             half_extent(points, p, cell, face / 2);
+    }
+
+    /** Calls `found` for each point, with its number, place and cell, that lies
+     * in the cells at a face of the domain, and the face. */
+    template <int dim, typename Found>
+    void
+    for_points_at_faces(const MaterialPoints<dim> &points, const Found &found)
+    {
+      unsigned int p = 0;
+      for (const auto &particle : points.sorted.particles)
+        {
+          const auto cell = particle.get_surrounding_cell();
+          if (cell->at_boundary())
+            for (const unsigned int f : cell->face_indices())
+              if (cell->face(f)->at_boundary())
+                found(p, particle.get_location(), cell, f);
+          ++p;
+        }
+    }
+  } // namespace
+
+  template <int dim>
+  void
+  add_touching_field(const Faces<dim>    &faces,
+                     const GridSpec<dim> &grid,
+                     PointLayout         &layout)
+  {
+    bool any = false;
+    for (unsigned int f = 0; f < 2 * dim; ++f)
+      any = any || faces[f].constrained[f / 2];
+    if (any && !grid.is_lagrangian())
+      layout.add("touched_faces", PointLayout::Kind::scalar);
+  }
+
+  template <int dim>
+  void
+  remember_touching(const Faces<dim>          &faces,
+                    const BackgroundGrid<dim> &grid,
+                    MaterialPoints<dim>       &points)
+  {
+    if (points.offset_touched == 0)
+      return;
+    std::vector<unsigned int> bits(points.size());
+    for_points_at_faces(
+      points,
+      [&](const unsigned int p,
+          const Point<dim>  &x,
+          const auto        &cell,
+          const unsigned int f) {
+        const bool has_touched = (bits_of(points, p) & touches(f)) != 0;
+        const bool draws       = faces[f].value && !faces[f].moves_grid;
+        if ((has_touched && draws) ||
+            gap_to_face(points, p, cell, f, x, grid.face_of_vertices(f)) <
+              (has_touched ? farthest : closest) * cell_extent(cell, f / 2))
+          bits[p] |= touches(f);
+      });
+    for (unsigned int p = 0; p < points.size(); ++p)
+      points.fields(p)[points.offset_touched] = bits[p];
+  }
+
+  template <int dim>
+  bool
+  land(const Faces<dim>                                  &faces,
+       const typename BackgroundGrid<dim>::FacePositions &end,
+       const std::vector<Tensor<1, dim>>                 &increments,
+       MaterialPoints<dim>                               &points)
+  {
+    if (points.offset_touched == 0)
+      return false;
+    bool any = false;
+    for_points_at_faces(
+      points,
+      [&](const unsigned int p,
+          const Point<dim>  &x,
+          const auto        &cell,
+          const unsigned int f) {
+        const unsigned int bits = bits_of(points, p);
+        if (!faces[f].constrained[f / 2] || (bits & touches(f)) != 0 ||
+            gap_to_face(points, p, cell, f, x + increments[p], end[f]) >= 0)
+          return;
+        points.fields(p)[points.offset_touched] =
+          bits | touches(f) | lands<dim>(f);
+        any = true;
+      });
+    return Utilities::MPI::max(any ? 1 : 0, points.communicator) > 0;
+  }
+
+  template <int dim>
+  TouchedNodes<dim>::TouchedNodes(const BackgroundGrid<dim> &grid,
+                                  const Discretization<dim> &discretization,
+                                  const MaterialPoints<dim> &points)
+    : all(points.offset_touched == 0)
+  {
+    if (all)
+      return;
+    for (unsigned int d = 0; d < dim; ++d)
+      largest_gap = std::max(largest_gap,
+                             grid.face_of_vertices(2 * d + 1) -
+                               grid.face_of_vertices(2 * d));
+    discretization.initialize(closeness);
+    const auto &hanging = discretization.numbering->hanging_nodes;
+    for_points_at_faces(
+      points,
+      [&](const unsigned int p,
+          const Point<dim>  &x,
+          const auto        &surrounding,
+          const unsigned int f) {
+        const unsigned int bits = bits_of(points, p);
+        if ((bits & touches(f)) == 0)
+          return;
+        // On a grid that has moved points are elsewhere than their boxes.
+        const double close =
+          largest_gap -
+          ((bits & lands<dim>(f)) != 0 && !grid.is_moved() ?
+             std::max(
+               0.,
+               gap_to_face(
+                 points, p, surrounding, f, x, grid.face_of_vertices(f))) :
+             0.);
+        const auto set = [&](const types::global_dof_index dof) {
+          closeness(dof) = std::max(closeness(dof), close);
+        };
+        const auto cell = discretization.with_dofs(surrounding);
+        for (const unsigned int v : cell->face(f)->vertex_indices())
+          {
+            const auto dof = cell->face(f)->vertex_dof_index(v, f / 2);
+            set(dof);
+            // A hanging node is held by holding its masters.
+            if (hanging.is_constrained(dof))
+              for (const auto &entry : *hanging.get_constraint_entries(dof))
+                set(entry.first);
+          }
+      });
+    closeness.compress(VectorOperation::max);
+    closeness.update_ghost_values();
+  }
+
+  template decltype(add_touching_field<2>) add_touching_field<2>;
+  template decltype(add_touching_field<3>) add_touching_field<3>;
+  template decltype(remember_touching<2>)  remember_touching<2>;
+  template decltype(remember_touching<3>)  remember_touching<3>;
+  template decltype(land<2>)               land<2>;
+  template decltype(land<3>)               land<3>;
+  template struct TouchedNodes<2>;
+  template struct TouchedNodes<3>;
+} // namespace impm

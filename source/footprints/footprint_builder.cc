@@ -1,4 +1,5 @@
 #include <impm/footprints/footprint_builder.h>
+#include <impm/points/point_domains.h>
 
 #include <algorithm>
 #include <limits>
@@ -51,33 +52,6 @@ namespace impm
       return weight;
     }
   } // namespace
-
-  template <int dim>
-  Tensor<1, dim>
-  half_extents(const MaterialPoints<dim> &points,
-               const unsigned int         p,
-               const unsigned int         offset_domain,
-               const bool                 stretched)
-  {
-    Tensor<1, dim> half = 0.5 * points.vector(p, offset_domain);
-    if (!stretched)
-      return half;
-    // The diagonal of U, which a rotation leaves alone.
-    const auto F =
-      points.layout.load_tensor(points.fields(p) + points.offset_deformation);
-    SymmetricTensor<2, dim> C;
-    for (unsigned int i = 0; i < dim; ++i)
-      for (unsigned int j = i; j < dim; ++j)
-        for (unsigned int k = 0; k < dim; ++k)
-          C[i][j] += F[k][i] * F[k][j];
-    Tensor<1, dim> stretch;
-    for (const auto &[square, axis] : eigenvectors(C))
-      for (unsigned int d = 0; d < dim; ++d)
-        stretch[d] += std::sqrt(std::max(square, 0.)) * axis[d] * axis[d];
-    for (unsigned int d = 0; d < dim; ++d)
-      half[d] *= stretch[d];
-    return half;
-  }
 
   template <int dim>
   void
@@ -275,8 +249,6 @@ namespace impm
     return footprints;
   }
 
-  template decltype(half_extents<2>) half_extents<2>;
-  template decltype(half_extents<3>) half_extents<3>;
   template class FootprintBuilder<2>;
   template class FootprintBuilder<3>;
 } // namespace impm

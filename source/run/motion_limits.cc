@@ -1,4 +1,4 @@
-#include <impm/footprints/touching.h>
+#include <impm/grid/touching.h>
 #include <impm/points/point_domains.h>
 #include <impm/run/flight.h>
 #include <impm/run/motion_limits.h>

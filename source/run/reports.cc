@@ -1,6 +1,7 @@
 #include <impm/balance/terms/loads.h>
 #include <impm/footprints/pieces.h>
 #include <impm/output/summary.h>
+#include <impm/run/likely_causes.h>
 #include <impm/run/simulation.h>
 #include <impm/solve/linear_solver_choice.h>
 
@@ -118,6 +119,20 @@ namespace impm
          << "where they exceed about " << limit << " s: the integrator is "
          << "stable only up to there";
     warn("instability", text.str());
+  }
+
+  template <int dim>
+  void
+  Simulation<dim>::warn_of_overfull_cells()
+  {
+    const double fullest = grid.is_lagrangian ? 1. : fullest_cell(points);
+    if (fullest <= 1.2)
+      return;
+    std::ostringstream text;
+    text
+      << "points in some cell have " << fullest
+      << " times its volume: material lies in itself, and bears as much more";
+    warn("overfull cells", text.str());
   }
 
   template <int dim>
@@ -245,6 +260,10 @@ namespace impm
   Simulation<2>::warn_of_instability();
   template void
   Simulation<3>::warn_of_instability();
+  template void
+  Simulation<2>::warn_of_overfull_cells();
+  template void
+  Simulation<3>::warn_of_overfull_cells();
   template void
   Simulation<2>::warn(const std::string &, const std::string &);
   template void

@@ -2,8 +2,8 @@
 
 #include <impm/base/exceptions.h>
 #include <impm/base/files.h>
-#include <impm/footprints/touching.h>
 #include <impm/footprints/transfer.h>
+#include <impm/grid/touching.h>
 #include <impm/run/motion_limits.h>
 #include <impm/run/run_directory.h>
 #include <impm/run/signals.h>
@@ -480,6 +480,7 @@ namespace impm
           warn(sentence, sentence);
         if (const auto sentence = find_shared_cells(points); !sentence.empty())
           warn("shared cells", sentence);
+        warn_of_overfull_cells();
         if (scene.output.pictures)
           picture(false);
       }

@@ -1,6 +1,6 @@
 #include <impm/balance/terms/loads.h>
 #include <impm/footprints/footprint_builder.h>
-#include <impm/footprints/touching.h>
+#include <impm/grid/touching.h>
 #include <impm/scene/scene.h>
 
 #include <boost/algorithm/cxx11/any_of.hpp>

@@ -10,15 +10,6 @@
 
 namespace impm
 {
-  /** Half the edges (m) of the box of a point, along the axes of the grid;
-   * the layout has those at the start at an offset. */
-  template <int dim>
-  dealii::Tensor<1, dim>
-  half_extents(const MaterialPoints<dim> &points,
-               unsigned int               p,
-               unsigned int               offset_domain,
-               bool                       stretched);
-
   /**
    * Says what a point is to the grid. It touches the cell that it lies in: in
    * plain MPM and in finite elements, whose cells may be any quadrilaterals.

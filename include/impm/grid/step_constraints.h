@@ -1,8 +1,8 @@
 #ifndef impm_grid_step_constraints_h
 #define impm_grid_step_constraints_h
 
-#include <impm/footprints/touching.h>
 #include <impm/grid/rigid_bodies.h>
+#include <impm/grid/touching.h>
 #include <impm/input/sections/boundary_conditions.h>
 
 #include <array>

@@ -44,6 +44,35 @@ namespace impm
     return edge;
   }
 
+  /** Half the edges (m) of the box of a point, along the axes of the grid;
+   * the layout has those at the start at an offset. */
+  template <int dim>
+  dealii::Tensor<1, dim>
+  half_extents(const MaterialPoints<dim> &points,
+               const unsigned int         p,
+               const unsigned int         offset_domain,
+               const bool                 stretched)
+  {
+    dealii::Tensor<1, dim> half = 0.5 * points.vector(p, offset_domain);
+    if (!stretched)
+      return half;
+    // The diagonal of U, which a rotation leaves alone.
+    const auto F =
+      points.layout.load_tensor(points.fields(p) + points.offset_deformation);
+    dealii::SymmetricTensor<2, dim> C;
+    for (unsigned int i = 0; i < dim; ++i)
+      for (unsigned int j = i; j < dim; ++j)
+        for (unsigned int k = 0; k < dim; ++k)
+          C[i][j] += F[k][i] * F[k][j];
+    dealii::Tensor<1, dim> stretch;
+    for (const auto &[square, axis] : eigenvectors(C))
+      for (unsigned int d = 0; d < dim; ++d)
+        stretch[d] += std::sqrt(std::max(square, 0.)) * axis[d] * axis[d];
+    for (unsigned int d = 0; d < dim; ++d)
+      half[d] *= stretch[d];
+    return half;
+  }
+
   /** Fields of a point by what splitting and merging do to them. */
   template <int dim>
   class PointDomains

@@ -128,6 +128,10 @@ namespace impm
     void
     warn_of_instability();
 
+    /** Warns of points from files that lie in each other. Collective. */
+    void
+    warn_of_overfull_cells();
+
     /** Says what is the first of its kind. Alike on all ranks. */
     void
     warn(const std::string &kind, const std::string &text);

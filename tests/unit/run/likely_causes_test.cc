@@ -82,8 +82,53 @@ TEST(LikelyCausesMpi, TheMaterial)
 }
 
 
-// What no scene does by itself: a body in a body, a residual that round-off
-// keeps up, where Newton's method stops (noise_stops).
+// A cloud of twice the points that there is room for, pressed to half its
+// height at once: the run says so when it begins and when it ends.
+TEST(LikelyCauses, AnOverfullCell)
+{
+  std::string csv = "x, y, volume\n";
+  for (unsigned int i = 0; i < 128; ++i)
+    csv += std::to_string((i % 8 + (i < 64 ? 0.5 : 0.6)) / 8) + ", " +
+           std::to_string((i / 8 % 8 + 0.5) / 8) + ", 0.015625\n";
+  const TemporaryFile cloud(csv, ".csv");
+  const std::string   directory =
+    testing::TempDir() + "impm_overfull_" + std::to_string(getpid());
+  const auto scene =
+    scene_from<2>(block_scene("plane strain"),
+                  at_once + Overrides{"Bodies/block/Points from=file",
+                                      "Bodies/block/File=" + cloud.name,
+                                      "Boundary conditions/bottom/Type=fixed",
+                                      "Boundary conditions/top/Type=normal "
+                                      "displacement",
+                                      "Boundary conditions/top/Value=-2*t"});
+  try
+    {
+      run(scene, MPI_COMM_SELF, directory);
+      ADD_FAILURE();
+    }
+  catch (const ComputationError &error)
+    {
+      expect_cause(error.what(), "an overfull cell");
+    }
+}
+
+
+// Newton's method stops where round-off keeps the residual up: such a tolerance
+// ends no run.
+TEST(LikelyCauses, ToleranceBelowRoundOff)
+{
+  const auto columns = run_file("upsetting_frictionless",
+                                {"Solver/Newton tolerance=1e-30",
+                                 "Solver/Newton reduction=1e-30",
+                                 "Time/End time=1e-3"});
+  double     stops   = 0;
+  for (const double n : columns.at("noise_stops"))
+    stops += n;
+  EXPECT_GT(stops, 0.);
+}
+
+
+// A residual that round-off keeps up.
 TEST(LikelyCauses, OfFigures)
 {
   FailedStep step;

@@ -1,5 +1,5 @@
-#ifndef impm_footprints_touching_h
-#define impm_footprints_touching_h
+#ifndef impm_grid_touching_h
+#define impm_grid_touching_h
 
 #include <impm/grid/background_grid.h>
 #include <impm/input/sections/boundary_conditions.h>

@@ -1,5 +1,5 @@
-#include <impm/footprints/footprint_builder.h>
-#include <impm/footprints/touching.h>
+#include <impm/grid/touching.h>
+#include <impm/points/point_domains.h>
 
 #include <cmath>
 #include <limits>

@@ -129,18 +129,15 @@ namespace impm
       return body.adaptation >= PointAdaptation::split;
     });
     const bool needs_initial_position =
-      // by which plain points know how far they have drifted
-      scene.grid.method == GridMethod::mpm ||
-      scene.loads.body_force_is_initial ||
+      // by which they know how far their deformation has drifted
+      !scene.grid.is_lagrangian() || scene.loads.body_force_is_initial ||
       any_of(scene.loads.tractions,
              [](const auto &traction) { return traction.is_initial; }) ||
       any_of(scene.output.point_fields,
              [](const auto &field) { return field == "displacement"; }) ||
       any_of(scene.output.probes,
-             [&](const auto &probe) {
-               // Points that split are found by where they were.
-               return probe.field == "displacement" || probe.where ||
-                      (splits && probe.kind == ProbeSpec::Kind::point);
+             [](const auto &probe) {
+               return probe.field == "displacement" || probe.where;
              }) ||
       any_of(scene.references,
              [](const auto &reference) { return !reference.field.empty(); });

@@ -162,6 +162,7 @@ namespace impm
     write_line(const std::string &line);
 
     const OutputSpec              &output;
+    const Bodies<dim>             &bodies;
     const MaterialPoints<dim>     &points;
     const BackgroundGrid<dim>     &grid;
     PointsPerCell                  density;

@@ -122,12 +122,16 @@ namespace impm
           return body.material && body.material->average_volume;
         }))
       layout.add("stress", Kind::symmetric_tensor);
-    if (time.has_inertia() && time.transfer == TransferKind::apic)
-      for (unsigned int d = 0; d < dim; ++d)
-        layout.add(std::string("velocity_gradient_") + "xyz"[d], Kind::vector);
-    const bool splits = any_of(scene.bodies, [](const auto &body) {
+    const bool splits  = any_of(scene.bodies, [](const auto &body) {
       return body.adaptation >= PointAdaptation::split;
     });
+    const bool is_apic = time.transfer == TransferKind::apic;
+    if (time.has_inertia() && (is_apic || splits))
+      for (unsigned int d = 0; d < dim; ++d)
+        layout.add(std::string(is_apic ? "velocity_gradient_" :
+                                         "grid_velocity_gradient_") +
+                     "xyz"[d],
+                   Kind::vector);
     const bool needs_initial_position =
       // by which they know how far their deformation has drifted
       !scene.grid.is_lagrangian() || scene.loads.body_force_is_initial ||

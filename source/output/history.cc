@@ -105,6 +105,7 @@ namespace impm
                   {"damped_steps", report.damped},
                   {"deformation_drift", drift},
                   {"pieces", report.pieces},
+                  {"flow_share", report.flow_share},
                   {"step_error", report.step_error}});
       return row;
     }

@@ -121,7 +121,8 @@ namespace
     }
 
     Columns
-    press(const std::string &method) const
+    press(const std::string &method,
+          const std::string &preconditioner = "multigrid") const
     {
       const double      speed = 50 * length / time;
       const auto        down = turned({{0, -1}}), right = turned({{1, 0}});
@@ -153,6 +154,7 @@ namespace
             "Time/End time=" + number(0.1 * time),
             "Time/Time step=" + number(0.005 * time),
             "Solver/Linear solver=CG",
+            "Solver/Preconditioner=" + preconditioner,
             "Solver/Linear tolerance=1e-8",
             "Output/compression/Component=" + along,
             "Output/corner_displacement/Position=" + pair(place({{10, 0}})),
@@ -278,6 +280,7 @@ TEST(ScalesMpi, StiffnessMayDifferByAnyFactor)
 TEST(Scales, UnitsDoNotMatter)
 {
   const auto reference = Frame{}.press("GIMP");
+  const auto with_amg  = Frame{}.press("GIMP", "AMG");
   EXPECT_EQ(reference.at("time").size(), 20u);
   for (const double power : {-1., -0.5, -0.05, 0.05, 1.})
     for (const unsigned int unit : {0, 1, 2})
@@ -293,6 +296,7 @@ TEST(Scales, UnitsDoNotMatter)
         SCOPED_TRACE(number(frame.length) + " m, " + number(frame.mass) +
                      " kg, " + number(frame.time) + " s");
         expect_same(reference, frame.press("GIMP"), frame, 1e-9);
+        expect_same(with_amg, frame.press("GIMP", "AMG"), frame, 1e-9);
       }
 }
 
@@ -301,17 +305,17 @@ TEST(Scales, UnitsDoNotMatter)
 TEST(ScalesMpi, PlaceAndDirectionDoNotMatter)
 {
   const auto reference = Frame{}.press("GIMP");
+  const auto with_amg  = Frame{}.press("GIMP", "AMG");
   for (const unsigned int turns : {1, 2, 3})
     for (const double shift : {0., 1e3, 1e6})
       {
         SCOPED_TRACE(std::to_string(turns) + " turns, " + number(shift));
         Frame frame;
-        frame.turns = turns;
-        frame.shift = {{shift, -3 * shift}};
-        expect_same(reference,
-                    frame.press("GIMP"),
-                    frame,
-                    1e-9 + 1e-13 * shift);
+        frame.turns           = turns;
+        frame.shift           = {{shift, -3 * shift}};
+        const double rounding = 1e-9 + 1e-13 * shift;
+        expect_same(reference, frame.press("GIMP"), frame, rounding);
+        expect_same(with_amg, frame.press("GIMP", "AMG"), frame, rounding);
       }
 }
 

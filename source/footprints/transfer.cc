@@ -86,12 +86,12 @@ namespace impm
                    MaterialPoints<dim>   &points)
     {
       for (unsigned int p = 0; p < points.size(); ++p)
-        std::fill_n(points.fields(p) + points.offset_affine, dim * dim, 0.);
+        std::fill_n(points.fields(p) + points.offset_gradient, dim * dim, 0.);
       for (const auto &cell : footprints.cells)
         for (unsigned int e = cell.begin; e < cell.end; ++e)
           {
             double *C =
-              points.fields(footprints.point[e]) + points.offset_affine;
+              points.fields(footprints.point[e]) + points.offset_gradient;
             for (unsigned int n = 0; n < Footprints<dim>::n_nodes; ++n)
               for (unsigned int c = 0; c < dim; ++c)
                 for (unsigned int d = 0; d < dim; ++d)
@@ -286,7 +286,7 @@ namespace impm
           points.set_vector(p, points.offset_rate, increments[p] / problem.dt);
         ++p;
       }
-    if (move && time.transfer == TransferKind::apic)
+    if (points.offset_gradient > 0)
       take_gradients(problem.footprints, result.velocity, points);
     if (points.offset_acceleration > 0)
       {

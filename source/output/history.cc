@@ -105,6 +105,7 @@ namespace impm
                   {"damped_steps", report.damped},
                   {"deformation_drift", drift},
                   {"pieces", report.pieces},
+                  {"flow_share", report.flow_share},
                   {"step_error", report.step_error}});
       return row;
     }
@@ -186,6 +187,7 @@ namespace impm
                         const RigidBodies<dim>    &rigid,
                         const BackgroundGrid<dim> &grid)
     : output(scene.output)
+    , bodies(scene.bodies)
     , points(points)
     , grid(grid)
     , names(column_names(scene))
@@ -202,7 +204,7 @@ namespace impm
     const auto at_start  = total(points);
     start_kinetic_energy = at_start.kinetic_energy;
     budget.begin(all_energy(at_start));
-    may_drift = !grid.is_lagrangian && deformation_drift(points) < 1e-3;
+    may_drift = !grid.is_lagrangian && deformation_drift(bodies, points) < 1e-3;
     for (const auto &probe : scene.output.probes)
       probes.push_back(make_probe(
         probe, scene, points, rigid, grid, &followed[probes.size()]));
@@ -297,7 +299,7 @@ namespace impm
                   report.external_work + report.resampling_kinetic_energy +
                     report.resampling_internal_energy,
                   report.uncertain_work);
-    drift               = may_drift ? deformation_drift(points) : 0.;
+    drift               = may_drift ? deformation_drift(bodies, points) : 0.;
     const auto n_points = points.sorted.n_global();
     density             = points_per_cell(grid, points);
     figures.clear();

@@ -43,20 +43,29 @@ namespace impm
       return 0.5 *
              (transpose(F) * F - Tensor<2, dim>(unit_symmetric_tensor<dim>()));
     }
+
+    /** Whether F is of the whole way of the points. Where they merge it begins
+     * anew if the law minds no shape, which liquids do not even have. */
+    template <int dim>
+    bool
+    has_whole_deformation(const BodySpec<dim> &body)
+    {
+      return body.adaptation != PointAdaptation::split_and_merge ?
+               body.material->is_solid() :
+               body.material->depends_on_shape();
+    }
   } // namespace
 
   template <int dim>
   double
-  deformation_drift(const MaterialPoints<dim> &points)
+  deformation_drift(const Bodies<dim>         &bodies,
+                    const MaterialPoints<dim> &points)
   {
-    const bool knows = points.layout.find("initial_position").has_value();
     // Volume, and what it weighs: |E - E_x| and |E_x|.
-    std::vector<double> sums(3);
-    const unsigned int  offset =
-      knows ? points.layout.offset("initial_position") : 0;
-    std::map<unsigned int, Sums<dim>> bodies;
+    std::vector<double>               sums(3);
+    std::map<unsigned int, Sums<dim>> of_bodies;
     const auto                        finish = [&]() {
-      for (const auto &[body, sum] : bodies)
+      for (const auto &[body, sum] : of_bodies)
         if (sum.spans_space())
           {
             const auto F = sum.F / sum.volume;
@@ -66,21 +75,22 @@ namespace impm
             sums[1] += sum.volume * (strain(F) - strain(F_x)).norm();
             sums[2] += sum.volume * strain(F_x).norm();
           }
-      bodies.clear();
+      of_bodies.clear();
     };
     typename Triangulation<dim>::active_cell_iterator cell;
-    unsigned int                                      p = 0;
+    unsigned int                                      next = 0;
     for (const auto &particle : points.sorted.particles)
       {
-        if (!knows)
-          break;
-        const auto here = particle.get_surrounding_cell();
+        const unsigned int p    = next++;
+        const auto         here = particle.get_surrounding_cell();
         if (p > 0 && here != cell)
           finish();
-        cell               = here;
-        auto          &sum = bodies[points.body(p)];
+        cell = here;
+        if (!has_whole_deformation(bodies[points.body(p)]))
+          continue;
+        auto          &sum = of_bodies[points.body(p)];
         const double   V   = points.initial_volume(p);
-        const auto     X   = points.vector(p, offset);
+        const auto     X   = points.vector(p, points.offset_initial_position);
         Tensor<1, dim> x;
         for (unsigned int d = 0; d < dim; ++d)
           x[d] = particle.get_location()[d];
@@ -95,7 +105,6 @@ namespace impm
         for (unsigned int i = 0; i < dim; ++i)
           for (unsigned int j = 0; j < dim; ++j)
             sum.F[i][j] += V * F[i][j];
-        ++p;
       }
     finish();
     Utilities::MPI::sum(sums, points.communicator, sums);

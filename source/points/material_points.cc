@@ -227,6 +227,8 @@ namespace impm
     , offset_rate(layout.find("displacement_rate").value_or(0))
     , offset_acceleration(layout.find("acceleration").value_or(0))
     , offset_affine(layout.find("velocity_gradient_x").value_or(0))
+    , offset_gradient(
+        layout.find("grid_velocity_gradient_x").value_or(offset_affine))
     , offset_stress(layout.find("stress").value_or(0))
     , offset_initial_position(layout.find("initial_position").value_or(0))
     , offset_touched(layout.find("touched_faces").value_or(0))
@@ -250,9 +252,9 @@ namespace impm
                 values[offset_velocity + c] =
                   body.velocity->value(seed.position, c);
                 // Else the grid would get less spin than the points have.
-                if (offset_affine > 0)
+                if (offset_gradient > 0)
                   copy(body.velocity->gradient(seed.position, c),
-                       values + offset_affine + dim * c);
+                       values + offset_gradient + dim * c);
               }
           if (offset_initial_position > 0)
             copy(seed.position, values + offset_initial_position);

@@ -56,13 +56,13 @@ namespace impm
           if (points.offset_initial_position > 0)
             values[points.offset_initial_position + axis] +=
               sign * reach * values[fields.domain + axis];
-          if (points.offset_affine > 0)
+          if (points.offset_gradient > 0)
             for (unsigned int c = 0; c < dim; ++c)
               for (unsigned int d = 0; d < dim; ++d)
                 // From the centre of mass.
                 values[points.offset_velocity + c] +=
-                  values[points.offset_affine + dim * c + d] * (sign - excess) *
-                  shift[d];
+                  values[points.offset_gradient + dim * c + d] *
+                  (sign - excess) * shift[d];
           values[fields.domain + axis] /= 2;
         }
       return other;

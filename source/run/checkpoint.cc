@@ -124,10 +124,10 @@ namespace impm
       Utilities::MPI::sum(counts.stress_evaluations, communicator);
     archive &time &total &since_row &control &jump &work &resampled
       &best_imbalance &adapted_step &off_grid &pictures &history &reference
-        &warnings &face_holds &pieces &counts.operator_applications &counts
-          .tangents &counts.hierarchies &counts.solver_fallbacks &counts
-          .direct_systems                                        &counts
-          .iterative_systems &evaluations &seconds               &seconds_by;
+        &warnings &face_holds &pieces &widest_flow &counts
+          .operator_applications &counts.tangents &counts.hierarchies &counts
+          .solver_fallbacks &counts.direct_systems &counts
+          .iterative_systems &evaluations &seconds &seconds_by;
     if (!Archive::is_loading::value)
       return;
     seconds_before = seconds;

@@ -40,7 +40,7 @@ namespace impm
         step.pieces_before =
           now.size() - std::count(now.begin(), now.end(), 0u);
         step.points_per_cell = points_per_cell(grid, points).smallest;
-        step.drift           = deformation_drift(points);
+        step.drift           = deformation_drift(scene.bodies, points);
         step.fullest         = fullest_cell(points);
         const auto approach  = find_approach(points,
                                             problem->footprints,

@@ -2,10 +2,12 @@
 #include <impm/footprints/pieces.h>
 #include <impm/output/summary.h>
 #include <impm/run/likely_causes.h>
+#include <impm/run/plastic_flow.h>
 #include <impm/run/simulation.h>
 #include <impm/solve/linear_solver_choice.h>
 
 #include <algorithm>
+#include <iomanip>
 #include <numeric>
 #include <sstream>
 
@@ -187,6 +189,40 @@ namespace impm
 
   template <int dim>
   void
+  Simulation<dim>::watch_flow()
+  {
+    if (jump.is_on()) // no motion of the material
+      return;
+    const auto flow = plastic_flow(points, problem->response);
+    widest_flow.resize(flow.size());
+    for (unsigned int b = 0; b < flow.size(); ++b)
+      {
+        const double now  = flow[b].share;
+        report.flow_share = std::min(report.flow_share, now);
+        if (!flow[b].flows)
+          continue;
+        double &widest = widest_flow[b];
+        if (widest < 0.6 || now > 0.4)
+          {
+            widest = std::max(widest, now);
+            continue;
+          }
+        std::ostringstream text;
+        text << std::setprecision(3) << "the flow of body '"
+             << scene.bodies[b].name << "' has localised: from " << 100 * widest
+             << " to " << 100 * now << " % of its volume, about "
+             << flow[b].place << " m";
+        if (scene.grid.method == GridMethod::mpm)
+          text << "; where and when is not to be trusted, since the noise of "
+                  "points that cross cells is a stronger flaw than those of "
+                  "the body (Grid/Method = GIMP)";
+        warn("flow of " + scene.bodies[b].name, text.str());
+        widest = now;
+      }
+  }
+
+  template <int dim>
+  void
   Simulation<dim>::write_row()
   {
     history.write(since_row);
@@ -276,6 +312,10 @@ namespace impm
   Simulation<2>::watch_pieces();
   template void
   Simulation<3>::watch_pieces();
+  template void
+  Simulation<2>::watch_flow();
+  template void
+  Simulation<3>::watch_flow();
   template void
   Simulation<2>::write_row();
   template void

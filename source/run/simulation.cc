@@ -354,7 +354,10 @@ namespace impm
     watch_faces();
     // While points are in the order of their footprints.
     if (row_is_due(report.step, time + report.dt))
-      watch_pieces();
+      {
+        watch_pieces();
+        watch_flow();
+      }
     report.damped     = jump.is_on();
     report.step_error = figures.error;
     if (control.is_wrong(figures))

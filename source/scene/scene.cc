@@ -123,25 +123,26 @@ namespace impm
           return body.material && body.material->average_volume;
         }))
       layout.add("stress", Kind::symmetric_tensor);
-    if (time.has_inertia() && time.transfer == TransferKind::apic)
-      for (unsigned int d = 0; d < dim; ++d)
-        layout.add(std::string("velocity_gradient_") + "xyz"[d], Kind::vector);
-    const bool splits = any_of(scene.bodies, [](const auto &body) {
+    const bool splits  = any_of(scene.bodies, [](const auto &body) {
       return body.adaptation >= PointAdaptation::split;
     });
+    const bool is_apic = time.transfer == TransferKind::apic;
+    if (time.has_inertia() && (is_apic || splits))
+      for (unsigned int d = 0; d < dim; ++d)
+        layout.add(std::string(is_apic ? "velocity_gradient_" :
+                                         "grid_velocity_gradient_") +
+                     "xyz"[d],
+                   Kind::vector);
     const bool needs_initial_position =
-      // by which plain points know how far they have drifted
-      scene.grid.method == GridMethod::mpm ||
-      scene.loads.body_force_is_initial ||
+      // by which they know how far their deformation has drifted
+      !scene.grid.is_lagrangian() || scene.loads.body_force_is_initial ||
       any_of(scene.loads.tractions,
              [](const auto &traction) { return traction.is_initial; }) ||
       any_of(scene.output.point_fields,
              [](const auto &field) { return field == "displacement"; }) ||
       any_of(scene.output.probes,
-             [&](const auto &probe) {
-               // Points that split are found by where they were.
-               return probe.field == "displacement" || probe.where ||
-                      (splits && probe.kind == ProbeSpec::Kind::point);
+             [](const auto &probe) {
+               return probe.field == "displacement" || probe.where;
              }) ||
       any_of(scene.references,
              [](const auto &reference) { return !reference.field.empty(); });

@@ -8,6 +8,7 @@
 
 #include <Teuchos_ParameterList.hpp>
 
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <sstream>
@@ -20,8 +21,24 @@ namespace impm
   {
     struct Amg
     {
+      /** Of a matrix whose address ML keeps, as that of the modes. */
+      explicit Amg(const TrilinosWrappers::SparseMatrix &matrix)
+      {
+        // ML takes for zero what is small in no unit: 7 % more iterations where
+        // entries are 1e-9, ten times as many at 1e-13.
+        const double size = matrix.linfty_norm();
+        if (size > 0 && size < 1)
+          {
+            scale = std::exp2(-std::floor(std::log2(size)));
+            scaled.copy_from(matrix);
+            scaled *= scale;
+          }
+      }
+
+      double                            scale = 1;
+      TrilinosWrappers::SparseMatrix    scaled; ///< unless that is one
       TrilinosWrappers::PreconditionAMG preconditioner;
-      std::vector<double>               modes; ///< whose address ML keeps
+      std::vector<double>               modes;
     };
 
     struct Factors
@@ -43,7 +60,9 @@ namespace impm
   make_amg(const SparseMatrix                     &matrix,
            const std::vector<std::vector<double>> &modes)
   {
-    const auto amg = std::make_shared<Amg>();
+    const auto  amg = std::make_shared<Amg>(matrix.trilinos->matrix);
+    const auto &trilinos_matrix =
+      amg->scale == 1 ? matrix.trilinos->matrix : amg->scaled;
     for (const auto &mode : modes)
       amg->modes.insert(amg->modes.end(), mode.begin(), mode.end());
     amg->modes.resize(std::max<std::size_t>(1, amg->modes.size()));
@@ -54,7 +73,6 @@ namespace impm
     // those that are stretched or adapted.
     data.aggregation_threshold = 0.01;
     std::unique_ptr<Epetra_MultiVector> unused;
-    const auto &trilinos_matrix = matrix.trilinos->matrix;
     data.set_parameters(parameters, unused, trilinos_matrix);
     const unsigned int n_components = matrix.unknowns.n_components;
     parameters.set("PDE equations", static_cast<int>(n_components));
@@ -90,6 +108,7 @@ namespace impm
       blame_matrix();
     return {[amg](Vector &dst, const Vector &src) {
       amg->preconditioner.vmult(dst, src);
+      dst *= amg->scale;
     }};
   }
 

@@ -35,6 +35,7 @@ namespace impm
     unsigned int unstable = 0; ///< steps from an equilibrium that is not stable
     unsigned int damped   = 0; ///< steps that end in none
     unsigned int pieces   = 0; ///< of all bodies, if counted
+    double       flow_share = 1; ///< smallest of any body, see PlasticFlow
     double       step_error = 0; ///< over the allowed one, if it is estimated
     double       imbalance  = 1; ///< cost of the busiest rank over the mean
     /** Since the start, gained where points were split or merged (J). */
@@ -50,11 +51,12 @@ namespace impm
     serialize(Archive &archive, const unsigned int /*version*/)
     {
       archive &step &time &dt &newton_iterations &linear_iterations
-        &line_searches &step_cuts &projections &solver_fallbacks &noise_stops &
-          held_cells &limited_boxes &active_cells &dofs &residual &external_work
-            &internal_work &stabilization_work &uncertain_work &splits &merges &
-              grid_resets &unstable &damped &pieces &resampling_kinetic_energy &
-                resampling_internal_energy &step_error &imbalance &wall_seconds;
+        &line_searches &step_cuts &projections &solver_fallbacks &noise_stops
+          &held_cells &limited_boxes &active_cells &dofs &residual
+            &external_work &internal_work &stabilization_work &uncertain_work
+              &splits &merges &grid_resets &unstable &damped &pieces &flow_share
+                &resampling_kinetic_energy &resampling_internal_energy
+                  &step_error &imbalance &wall_seconds;
     }
   };
 
@@ -162,6 +164,7 @@ namespace impm
     write_line(const std::string &line);
 
     const OutputSpec              &output;
+    const Bodies<dim>             &bodies;
     const MaterialPoints<dim>     &points;
     const BackgroundGrid<dim>     &grid;
     PointsPerCell                  density;

@@ -230,9 +230,12 @@ namespace impm
     const unsigned int   offset_deformation, offset_history;
     // 0 where the points have none of it. The rate is that of the step before,
     // where there are no velocities. The affine velocity is a matrix by
-    // rows, d v_i / d x_j; the stress is what the force at t_n comes from, tau.
+    // rows, d v_i / d x_j; so is the gradient of the grid's velocity, by which
+    // the halves of a point part, and which with APIC is the same. The stress
+    // is what the force at t_n comes from, tau.
     const unsigned int offset_velocity, offset_rate, offset_acceleration,
-      offset_affine, offset_stress, offset_initial_position, offset_touched;
+      offset_affine, offset_gradient, offset_stress, offset_initial_position,
+      offset_touched;
     /** Within the history: offsets count from offset_history. */
     const PointLayout history_layout;
     const MPI_Comm    communicator;

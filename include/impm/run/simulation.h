@@ -179,6 +179,10 @@ namespace impm
     void
     watch_pieces();
 
+    /** Tells when the plastic flow of a body localises. Collective. */
+    void
+    watch_flow();
+
     /** Warns of prescribed faces that have lost their material. Collective. */
     void
     watch_faces();
@@ -278,6 +282,7 @@ namespace impm
     Warnings                  warnings;
     std::array<bool, 2 * dim> face_holds{}; ///< material, in the last step
     std::vector<unsigned int> pieces;       ///< by body, at the last row
+    std::vector<double>       widest_flow;  ///< by body, see PlasticFlow
     dealii::Timer             wall;
     std::string               directory, scene_name, parameters;
     StepReport                report; ///< of the step that is being made

@@ -79,7 +79,7 @@ TEST(Memory, OfAPointIsBoundedByOwner)
            {{"footprints", 340},
             {"ghost_penalty", 40},
             {"matrix", 470},
-            {"points", 124},
+            {"points", 140},
             {"response", 176}});
   }
   {
@@ -97,7 +97,7 @@ TEST(Memory, OfAPointIsBoundedByOwner)
            {{"footprints", 1090},
             {"ghost_penalty", 153},
             {"matrix", 2600},
-            {"points", 188},
+            {"points", 212},
             {"response", 576}});
   }
 }

@@ -227,6 +227,40 @@ TEST(AdaptPointsMpi, SplittingKeepsSums)
 }
 
 
+// Halves part with the velocity that the grid has where they are.
+TEST(AdaptPointsMpi, HalvesTakeTheGradientOfVelocity)
+{
+  for (const std::string transfer : {"FLIP", "PIC", "APIC"})
+    {
+      SCOPED_TRACE(transfer);
+      Model<2> model(block_scene("plane strain"),
+                     splitting + with_inertia +
+                       Overrides{"Time/Transfer=" + transfer,
+                                 "Geometry/box/Lower corner=0.25, 0.25",
+                                 "Geometry/box/Upper corner=0.75, 0.75",
+                                 "Bodies/block/Velocity=2*x-y; 3*x+y"});
+      // Longer than a cell, without a change of velocity.
+      Tensor<2, 3> F = unit_symmetric_tensor<3>();
+      F[0][0]        = 1.8;
+      auto &points   = model.points;
+      for (unsigned int p = 0; p < points.size(); ++p)
+        points.layout.store_tensor(F,
+                                   points.fields(p) +
+                                     points.offset_deformation);
+      EXPECT_GT(adapt_points(model.scene.bodies, model.grid, points).splits,
+                0u);
+      unsigned int p = 0;
+      for (const auto &particle : points.sorted.particles)
+        {
+          const auto x = particle.get_location();
+          const auto v = points.velocity(p++);
+          EXPECT_NEAR(v[0], 2 * x[0] - x[1], 1e-8);
+          EXPECT_NEAR(v[1], 3 * x[0] + x[1], 1e-8);
+        }
+    }
+}
+
+
 namespace
 {
   template <int dim>

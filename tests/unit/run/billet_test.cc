@@ -87,3 +87,25 @@ TEST(BilletMpi, TimeIntegratorsAgree)
   EXPECT_NEAR(grid, elements, 0.05 * elements);
   EXPECT_NEAR(forward, elements, 0.1 * elements);
 }
+
+
+// All of it in one step, a thousand times what a wave takes through a cell: it
+// is cut as often as contact asks for.
+TEST(Billet, AStepMayBeFarTooLong)
+{
+  const double end_corner = 7.398,
+               end_load   = 3.68e8; // finite elements, 0.25 cm
+  for (const std::string method : {"MPM", "GIMP"})
+    {
+      SCOPED_TRACE(method);
+      const auto columns = run_file("billet_dynamic",
+                                    {"Grid/Cells=20, 11",
+                                     "Grid/Method=" + method,
+                                     "Time/CFL number=1e3"});
+      EXPECT_NEAR(columns.at("compression").back(), 0.5, 1e-12);
+      EXPECT_NEAR(columns.at("corner_displacement").back(),
+                  end_corner,
+                  0.06 * end_corner);
+      EXPECT_NEAR(columns.at("platen_load").back(), end_load, 0.15 * end_load);
+    }
+}

@@ -63,3 +63,28 @@ TEST(LockingMpi, CooksMembraneByPoints)
               6.9,
             0.85);
 }
+
+
+// Closer to nu = 0.5 it rises to the same limit; with F-bar and a bulk modulus
+// 5e5 times the shear modulus, which stands for nu = 0.499999.
+TEST(Locking, CooksMembraneTendsToALimit)
+{
+  const auto expect_limit = [](const std::string              &scene,
+                               const std::vector<std::string> &grid,
+                               const double                    error) {
+    SCOPED_TRACE(scene);
+    const auto rise = [&](const std::string &modulus) {
+      auto overrides = grid;
+      overrides.push_back("Materials/rubber/Bulk modulus=" + modulus);
+      return run_file(scene, overrides).at("rise").back();
+    };
+    const double near = rise("40.0942e10"), nearest = rise("4.0096874e13");
+    EXPECT_NEAR(nearest / 6.9, 1., error);
+    // Some steps are cut, which F-bar and new grids know.
+    EXPECT_NEAR(nearest / near, 1., 3e-3);
+  };
+  expect_limit("cook", {"Grid/Cells=16, 16"}, 0.015);
+  expect_limit("extreme/cook_points",
+               {"Grid/Cells=14, 18", "General/Constants=h = 0.004"},
+               0.015);
+}

@@ -152,6 +152,34 @@ TEST(Upsetting, LongStepsDoNotCarryPointsThroughThePlaten)
   EXPECT_NEAR(columns.at("time").back(), 0.009, 1e-12);
 }
 
+// Steps of 1 to 1e5 times what a wave takes through the smallest cell, the
+// shortest ones for a while. Nodes that land make a stair of the load, of 5 %
+// on cells of 1 mm.
+TEST(Upsetting, StepsOfAnyLengthAgreeWithFiniteElements)
+{
+  const auto check = [](const std::string              &cfl,
+                        const std::vector<std::string> &overrides,
+                        const double                    travel,
+                        const double                    allowed) {
+    SCOPED_TRACE(cfl);
+    auto all = overrides;
+    all.push_back("Time/CFL number=" + cfl);
+    const auto columns = run_file("upsetting", all);
+    EXPECT_GE(columns.at("platen_displacement").back(), travel);
+    compare_with_finite_elements(columns, "platen_load", allowed);
+    compare_with_finite_elements(columns, "largest_radius", 0.01);
+  };
+  const std::string              even   = "Grid/Adaptation/Highest level=0";
+  const std::vector<std::string> coarse = {even,
+                                           "Grid/Cells=12, 8",
+                                           "Time/Largest number of steps=330"};
+  check("1", coarse, 1e-4, 0.01);
+  check("10", coarse, 9e-4, 0.01);
+  check("1e3", {even}, 0.009 - 1e-12, 0.06);
+  check("1e4", {}, 0.009 - 1e-12, 0.025);
+  check("1e5", {}, 0.009 - 1e-12, 0.025);
+}
+
 TEST(Extreme, BallThatNothingHolds)
 {
   const auto columns = run_file("extreme/isolated_ball");

@@ -18,6 +18,9 @@ TEST(Wake, GridAndPointsRecover)
   EXPECT_NEAR(cells.back() / cells.front(), 1., 0.1);
   EXPECT_LT(*std::max_element(points.begin(), points.end()), 1.12 * start);
 
+  // F begins anew where points merge: it is not said to drift.
+  EXPECT_EQ(columns.at("deformation_drift").back(), 0);
+
   // The mean after the start is that without merging.
   double sum = 0, duration = 0;
   for (unsigned int i = 0; i < time.size(); ++i)

@@ -77,7 +77,8 @@ namespace impm
         carrier[i]   = static_cast<unsigned int>(carriers.local_element(i)) - 1;
         increment[i] = prescribed(i, time, dt);
         // What has not reached its face yet comes to it in this step.
-        if (const unsigned int f = carrier[i]; f < 2 * dim && i % dim == f / 2)
+        if (const unsigned int f = carrier[i];
+            f < 2 * dim && i % dim == f / 2 && faces[f].holds_by_touch)
           increment[i] += (f % 2 == 0 ? -1 : 1) * touched.gap(i);
       }
   }
@@ -108,7 +109,7 @@ namespace impm
             for (const unsigned int v : face->vertex_indices())
               {
                 const unsigned int f = face->boundary_id();
-                if (touched &&
+                if (touched && faces[f].holds_by_touch &&
                     !touched->are_held(face->vertex_dof_index(v, f / 2)))
                   continue;
                 for (unsigned int c = 0; c < dim; ++c)

@@ -1,6 +1,7 @@
 #include <impm/grid/touching.h>
 #include <impm/points/point_domains.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -93,14 +94,11 @@ namespace impm
 
   template <int dim>
   void
-  add_touching_field(const Faces<dim>    &faces,
-                     const GridSpec<dim> &grid,
-                     PointLayout         &layout)
+  add_touching_field(const Faces<dim> &faces, PointLayout &layout)
   {
-    bool any = false;
-    for (unsigned int f = 0; f < 2 * dim; ++f)
-      any = any || faces[f].constrained[f / 2];
-    if (any && !grid.is_lagrangian())
+    if (std::any_of(faces.begin(), faces.end(), [](const auto &face) {
+          return face.holds_by_touch;
+        }))
       layout.add("touched_faces", PointLayout::Kind::scalar);
   }
 
@@ -119,11 +117,12 @@ namespace impm
           const Point<dim>  &x,
           const auto        &cell,
           const unsigned int f) {
-        const bool has_touched = (bits_of(points, p) & touches(f)) != 0;
-        const bool draws       = faces[f].value && !faces[f].moves_grid;
-        if ((has_touched && draws) ||
-            gap_to_face(points, p, cell, f, x, grid.face_of_vertices(f)) <
-              (has_touched ? farthest : closest) * cell_extent(cell, f / 2))
+        if (!faces[f].holds_by_touch)
+          return;
+        const double far =
+          (bits_of(points, p) & touches(f)) != 0 ? farthest : closest;
+        if (gap_to_face(points, p, cell, f, x, grid.face_of_vertices(f)) <
+            far * cell_extent(cell, f / 2))
           bits[p] |= touches(f);
       });
     for (unsigned int p = 0; p < points.size(); ++p)
@@ -147,7 +146,7 @@ namespace impm
           const auto        &cell,
           const unsigned int f) {
         const unsigned int bits = bits_of(points, p);
-        if (!faces[f].constrained[f / 2] || (bits & touches(f)) != 0 ||
+        if (!faces[f].holds_by_touch || (bits & touches(f)) != 0 ||
             gap_to_face(points, p, cell, f, x + increments[p], end[f]) >= 0)
           return;
         points.fields(p)[points.offset_touched] =

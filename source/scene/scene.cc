@@ -39,6 +39,22 @@ namespace impm
           "their impacts with 'Grid/Reset = every step'");
     }
 
+    /** Which faces hold by touch: that come to material, or to which it comes
+     * without inertia. Not those that draw material away from themselves, nor
+     * walls from which it has to part again: what touches is glued. */
+    template <int dim>
+    void
+    choose_touch(Scene<dim> &scene)
+    {
+      for (unsigned int f = 0; f < 2 * dim; ++f)
+        {
+          auto &face = scene.faces[f];
+          face.holds_by_touch =
+            !scene.grid.is_lagrangian() && face.constrained[f / 2] &&
+            (face.moves_grid || (!face.value && !scene.time.has_inertia()));
+        }
+    }
+
     /** Declares, or reads and checks. */
     template <int dim>
     Scene<dim>
@@ -60,6 +76,7 @@ namespace impm
       add_boundary_conditions(top, scene.faces, scene.grid, scene.warnings);
       add_loads(top, scene.loads, scene.bodies, lagrangian);
       add_time(top, scene.time, lagrangian, scene.warnings);
+      choose_touch(scene);
       check_reset(top, scene);
       add_solver(top, scene.solver, scene.time, scene.bodies);
       add_stabilization(top, scene.stabilization, scene.time, lagrangian);
@@ -157,7 +174,7 @@ namespace impm
       layout.add("initial_domain", Kind::vector);
 
     FootprintBuilder<dim>::add_fields(scene.grid, layout);
-    add_touching_field(scene.faces, scene.grid, layout);
+    add_touching_field(scene.faces, layout);
     for (const auto &traction : scene.loads.tractions)
       layout.add(traction_field(traction), Kind::scalar);
 

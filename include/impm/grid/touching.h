@@ -14,18 +14,15 @@ namespace impm
   // hold what has come to touch them. Points in those cells at the start do.
 
   /** What points have to carry so that they know which faces of the domain they
-   * touch: bit f is of face f. Nothing where no face holds material. */
+   * touch: bit f is of face f. Nothing where no face holds by touch. */
   template <int dim>
   void
-  add_touching_field(const Faces<dim>    &faces,
-                     const GridSpec<dim> &grid,
-                     PointLayout         &layout);
+  add_touching_field(const Faces<dim> &faces, PointLayout &layout);
 
   /**
    * Between steps: points touch a face whose boxes are less than a tenth of a
    * cell away from it. They go on doing so up to two fifths, so that a
-   * deformation that drifts does not let go, or as long as they stay in the
-   * cells there if the face draws them away from itself.
+   * deformation that drifts does not let go.
    */
   template <int dim>
   void

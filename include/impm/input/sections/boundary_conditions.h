@@ -18,6 +18,9 @@ namespace impm
     std::array<bool, dim> constrained{}; ///< which components are prescribed
     bool                  moves_grid  = false;
     bool                  is_velocity = false;
+    /** Holds what touches it, rather than all that lies in its cells; see
+     * grid/touching.h. */
+    bool holds_by_touch = false;
     /** Prescribed displacement or velocity in (x, t); null means zero. */
     std::shared_ptr<dealii::FunctionParser<dim>> value;
     /** Force per initial area (Pa), or null. */

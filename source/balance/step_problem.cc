@@ -87,7 +87,7 @@ namespace impm
                   time,
                   dt,
                   norm ? norm->unit_strain_forces : gathered.mass,
-                  TouchedNodes<dim>(grid, *discretization, points))
+                  TouchedNodes<dim>(scene.faces, grid, *discretization, points))
     , response(points,
                dt,
                integrator.has_stress_in_the_middle(),

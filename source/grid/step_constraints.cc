@@ -61,7 +61,8 @@ namespace impm
     , discretization(discretization)
   {
     const Vector carriers = find_carriers(&touched),
-                 walls    = find_carriers(nullptr);
+                 walls =
+                   touched.are_all_held() ? carriers : find_carriers(nullptr);
 
     const auto &masters = discretization.numbering->masters;
     for (unsigned int i = 0; i < is_constrained.size(); ++i)

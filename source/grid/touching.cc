@@ -1,5 +1,6 @@
 #include <impm/grid/touching.h>
 #include <impm/points/point_domains.h>
+#include <impm/points/point_fields.h>
 
 #include <algorithm>
 #include <cmath>
@@ -42,20 +43,15 @@ namespace impm
     half_extent(const MaterialPoints<dim> &points,
                 const unsigned int         p,
                 const Cell                &cell,
+                const Point<dim>          &place,
                 const unsigned int         axis)
     {
       if (const auto domain = points.layout.find("initial_domain"))
         return half_extents(points, p, *domain, true)[axis];
-      double of_cell = 1;
+      double part = present_measure(points, p, place);
       for (unsigned int d = 0; d < dim; ++d)
-        of_cell *= cell_extent(cell, d);
-      if (points.layout.geometry == GeometryKind::axisymmetric)
-        of_cell *= 2 * numbers::PI * cell->center()[0];
-      const double volume = points.initial_volume(p) *
-                            determinant(points.layout.load_tensor(
-                              points.fields(p) + points.offset_deformation));
-      return 0.5 * cell_extent(cell, axis) *
-             std::pow(volume / of_cell, 1. / dim);
+        part /= cell_extent(cell, d);
+      return 0.5 * cell_extent(cell, axis) * std::pow(part, 1. / dim);
     }
 
     /** Between the box of a point, at `place`, and a face at `face_position`
@@ -70,14 +66,17 @@ namespace impm
                 const double               face_position)
     {
       return (face % 2 == 0 ? 1 : -1) * (place[face / 2] - face_position) -
-             half_extent(points, p, cell, face / 2);
+             half_extent(points, p, cell, place, face / 2);
     }
 
-    /** Calls `found` for each point, with its number, place and cell, that lies
-     * in the cells at a face of the domain, and the face. */
+    /** Calls `found` for each point that lies in the cells at a face of the
+     * domain which holds by touch: with its number, place, cell and the face.
+     */
     template <int dim, typename Found>
     void
-    for_points_at_faces(const MaterialPoints<dim> &points, const Found &found)
+    for_points_at_faces(const Faces<dim>          &faces,
+                        const MaterialPoints<dim> &points,
+                        const Found               &found)
     {
       unsigned int p = 0;
       for (const auto &particle : points.sorted.particles)
@@ -85,7 +84,7 @@ namespace impm
           const auto cell = particle.get_surrounding_cell();
           if (cell->at_boundary())
             for (const unsigned int f : cell->face_indices())
-              if (cell->face(f)->at_boundary())
+              if (cell->face(f)->at_boundary() && faces[f].holds_by_touch)
                 found(p, particle.get_location(), cell, f);
           ++p;
         }
@@ -112,13 +111,12 @@ namespace impm
       return;
     std::vector<unsigned int> bits(points.size());
     for_points_at_faces(
+      faces,
       points,
       [&](const unsigned int p,
           const Point<dim>  &x,
           const auto        &cell,
           const unsigned int f) {
-        if (!faces[f].holds_by_touch)
-          return;
         const double far =
           (bits_of(points, p) & touches(f)) != 0 ? farthest : closest;
         if (gap_to_face(points, p, cell, f, x, grid.face_of_vertices(f)) <
@@ -140,13 +138,14 @@ namespace impm
       return false;
     bool any = false;
     for_points_at_faces(
+      faces,
       points,
       [&](const unsigned int p,
           const Point<dim>  &x,
           const auto        &cell,
           const unsigned int f) {
         const unsigned int bits = bits_of(points, p);
-        if (!faces[f].holds_by_touch || (bits & touches(f)) != 0 ||
+        if ((bits & touches(f)) != 0 ||
             gap_to_face(points, p, cell, f, x + increments[p], end[f]) >= 0)
           return;
         points.fields(p)[points.offset_touched] =
@@ -157,7 +156,23 @@ namespace impm
   }
 
   template <int dim>
-  TouchedNodes<dim>::TouchedNodes(const BackgroundGrid<dim> &grid,
+  void
+  end_landing(const bool was_made, MaterialPoints<dim> &points)
+  {
+    if (points.offset_touched == 0)
+      return;
+    constexpr unsigned int all = (1u << 2 * dim) - 1;
+    for (unsigned int p = 0; p < points.size(); ++p)
+      {
+        const unsigned int bits = bits_of(points, p), landed = bits >> 2 * dim;
+        points.fields(p)[points.offset_touched] =
+          bits & all & ~(was_made ? 0u : landed);
+      }
+  }
+
+  template <int dim>
+  TouchedNodes<dim>::TouchedNodes(const Faces<dim>          &faces,
+                                  const BackgroundGrid<dim> &grid,
                                   const Discretization<dim> &discretization,
                                   const MaterialPoints<dim> &points)
     : all(points.offset_touched == 0)
@@ -171,6 +186,7 @@ namespace impm
     discretization.initialize(closeness);
     const auto &hanging = discretization.numbering->hanging_nodes;
     for_points_at_faces(
+      faces,
       points,
       [&](const unsigned int p,
           const Point<dim>  &x,
@@ -212,6 +228,8 @@ namespace impm
   template decltype(remember_touching<3>)  remember_touching<3>;
   template decltype(land<2>)               land<2>;
   template decltype(land<3>)               land<3>;
+  template decltype(end_landing<2>)        end_landing<2>;
+  template decltype(end_landing<3>)        end_landing<3>;
   template struct TouchedNodes<2>;
   template struct TouchedNodes<3>;
 } // namespace impm

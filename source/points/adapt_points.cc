@@ -49,9 +49,11 @@ namespace impm
       double number = n_here;
       if (!grid.is_lagrangian)
         {
-          number /= volume;
+          double of_cell = 1;
           for (unsigned int d = 0; d < dim; ++d)
-            number *= cell_extent(cell, d);
+            of_cell *= cell_extent(cell, d);
+          number *= of_cell / volume;
+          result.fullest = std::max(result.fullest, volume / of_cell);
           for (unsigned int d = 0; d < dim; ++d)
             if (const double apart = lengths[d] / n_here / cell_extent(cell, d);
                 apart > 1.0001)
@@ -95,6 +97,7 @@ namespace impm
       finish(cell);
     const auto comm = grid.communicator;
     result.smallest = Utilities::MPI::min(result.smallest, comm);
+    result.fullest  = Utilities::MPI::max(result.fullest, comm);
     result.mean =
       Utilities::MPI::sum(sum, comm) / Utilities::MPI::sum(n_cells, comm);
     return result;

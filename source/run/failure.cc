@@ -39,9 +39,10 @@ namespace impm
         // As many as there are bodies with points.
         step.pieces_before =
           now.size() - std::count(now.begin(), now.end(), 0u);
-        step.points_per_cell = points_per_cell(grid, points).smallest;
+        const auto density   = points_per_cell(grid, points);
+        step.points_per_cell = density.smallest;
+        step.fullest         = density.fullest;
         step.drift           = deformation_drift(scene.bodies, points);
-        step.fullest         = fullest_cell(points);
         const auto approach  = find_approach(points,
                                             problem->footprints,
                                             *problem->discretization,

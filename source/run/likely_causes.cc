@@ -74,48 +74,4 @@ namespace impm
              "tell" :
              "likely " + join(causes, ", or ");
   }
-
-  template <int dim>
-  double
-  fullest_cell(const MaterialPoints<dim> &points)
-  {
-    double                                            fullest = 0, volume = 0;
-    typename Triangulation<dim>::active_cell_iterator cell;
-    const auto                                        finish = [&]() {
-      if (volume == 0)
-        return;
-      double of_cell = 1;
-      for (unsigned int d = 0; d < dim; ++d)
-        of_cell *= cell_extent(cell, d);
-      if (points.layout.geometry == GeometryKind::axisymmetric)
-        of_cell *= 2 * numbers::PI * cell->center()[0];
-      fullest = std::max(fullest, volume / of_cell);
-    };
-    unsigned int p = 0;
-    for (const auto &particle : points.sorted.particles)
-      {
-        const auto here = particle.get_surrounding_cell();
-        if (p == 0 || here != cell)
-          {
-            finish();
-            cell   = here;
-            volume = 0;
-          }
-        // The thickness of a plane is that at the start.
-        const auto   F = points.layout.load_tensor(points.fields(p) +
-                                                 points.offset_deformation);
-        const double J = points.layout.geometry == GeometryKind::plane_stress ?
-                           determinant(F) / F[2][2] :
-                           determinant(F);
-        volume += J * points.initial_volume(p);
-        ++p;
-      }
-    finish();
-    return Utilities::MPI::max(fullest, points.communicator);
-  }
-
-  template double
-  fullest_cell(const MaterialPoints<2> &);
-  template double
-  fullest_cell(const MaterialPoints<3> &);
 } // namespace impm

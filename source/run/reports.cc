@@ -1,7 +1,6 @@
 #include <impm/balance/terms/loads.h>
 #include <impm/footprints/pieces.h>
 #include <impm/output/summary.h>
-#include <impm/run/likely_causes.h>
 #include <impm/run/plastic_flow.h>
 #include <impm/run/simulation.h>
 #include <impm/solve/linear_solver_choice.h>
@@ -127,7 +126,7 @@ namespace impm
   void
   Simulation<dim>::warn_of_overfull_cells()
   {
-    const double fullest = grid.is_lagrangian ? 1. : fullest_cell(points);
+    const double fullest = points_per_cell(grid, points).fullest;
     if (fullest <= 1.2)
       return;
     std::ostringstream text;

@@ -287,6 +287,7 @@ namespace impm
                  "the one that has moved: it is distorted too much for a "
                  "'Largest motion' of " +
                    Utilities::to_string(scene.grid.reset_motion) + " cells");
+            end_landing(false, points);
             reset_grid();
             builder.remember(points);
             remember_touching(scene.faces, grid, points);
@@ -309,6 +310,8 @@ namespace impm
           }
         if (part == 1)
           break;
+        // A shorter step need not reach what this one did.
+        end_landing(false, points);
         // What is out of balance moves it by as much in however short a step.
         if (!failed && dt < 1e-9 * scene.time.step * step_unit())
           {
@@ -337,6 +340,7 @@ namespace impm
             throw ComputationError(where.str());
           }
       }
+    end_landing(true, points);
     report.solver_fallbacks = counts.solver_fallbacks - total.solver_fallbacks;
     report.held_cells       = problem->n_held_cells;
     report.limited_boxes    = problem->n_limited_boxes;

@@ -33,8 +33,8 @@ namespace impm
   /**
    * Lets those points land, in the cells at a face of `faces`, whose boxes
    * would otherwise be carried through it by their increments, faces being at
-   * `end` then; returns whether there are any. The step is to be solved anew
-   * with them. Collective.
+   * `end` then; returns whether there are any. The step, of the same length,
+   * is to be solved anew with them. Collective.
    */
   template <int dim>
   bool
@@ -43,14 +43,28 @@ namespace impm
        const std::vector<dealii::Tensor<1, dim>>         &increments,
        MaterialPoints<dim>                               &points);
 
+  /** After a step that was made, or not: what has landed in it touches its
+   * face, or does not. */
+  template <int dim>
+  void
+  end_landing(bool was_made, MaterialPoints<dim> &points);
+
   /** What touches the nodes of faces. */
   template <int dim>
   struct TouchedNodes
   {
     /** Collective. */
-    TouchedNodes(const BackgroundGrid<dim> &grid,
+    TouchedNodes(const Faces<dim>          &faces,
+                 const BackgroundGrid<dim> &grid,
                  const Discretization<dim> &discretization,
                  const MaterialPoints<dim> &points);
+
+    /** Whether faces hold all their nodes. */
+    bool
+    are_all_held() const
+    {
+      return all;
+    }
 
     /** Whether a face holds a node, given its component along the normal. */
     bool

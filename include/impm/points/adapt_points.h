@@ -79,12 +79,15 @@ namespace impm
   struct PointsPerCell
   {
     double smallest = 0, mean = 0;
+    /** Largest volume of the points of a cell over its own: above 1 where
+     * material lies in itself. 1 on a Lagrangian grid. */
+    double fullest = 1;
 
     template <class Archive>
     void
     serialize(Archive &archive, const unsigned int /*version*/)
     {
-      archive &smallest &mean;
+      archive &smallest &mean &fullest;
     }
   };
 

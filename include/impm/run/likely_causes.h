@@ -1,8 +1,6 @@
 #ifndef impm_run_likely_causes_h
 #define impm_run_likely_causes_h
 
-#include <impm/points/material_points.h>
-
 #include <string>
 #include <vector>
 
@@ -19,7 +17,7 @@ namespace impm
     double       points_per_cell = 1;           ///< smallest, by volume
     double       drift           = 0;           ///< see deformation_drift()
     bool         are_plain       = false;       ///< points without boxes
-    double       fullest         = 0; ///< volume of points over that of a cell
+    double       fullest         = 1;           ///< see PointsPerCell
     double       smallest_J = 1, largest_J = 1; ///< of a point
     bool         bodies_touch = false;          ///< share a node, or nearly do
   };
@@ -28,12 +26,6 @@ namespace impm
    * or that there is no sign of any. */
   std::string
   likely_causes(const FailedStep &step);
-
-  /** Largest share of a cell that the points in it fill; above 1 where material
-   * lies in itself. Collective. */
-  template <int dim>
-  double
-  fullest_cell(const MaterialPoints<dim> &points);
 } // namespace impm
 
 #endif

@@ -26,22 +26,26 @@ namespace
   // tenth of that away.
   constexpr double gap = 0.125, near = 0.1 * gap;
 
-  const Overrides a_face_apart = {"Materials/rubber/Poisson's ratio=0",
-                                  "Grid/Upper corner=1, 1.125",
-                                  "Grid/Cells=8, 9",
-                                  "Output/Reactions=load",
-                                  "Output/load/Direction=0, 1"};
-
   /** A face comes down by 0.3 in ten steps. */
+  template <int dim = 2>
   void
-  check_press(const std::string &method, const Overrides &overrides = {})
+  check_press(const std::string &method,
+              const Overrides   &overrides = {},
+              const std::string &kind      = "plane strain")
   {
-    SCOPED_TRACE(method);
+    SCOPED_TRACE(kind + ", " + method);
+    const bool solid = dim == 3;
     const auto columns =
-      run_block<2>("plane strain",
-                   a_face_apart + overrides +
-                     Overrides{"Grid/Method=" + method,
+      run_block<dim>(kind,
+                     Overrides{"Materials/rubber/Poisson's ratio=0",
+                               "Grid/Method=" + method,
+                               solid ? "Grid/Upper corner=1, 1.125, 1" :
+                                       "Grid/Upper corner=1, 1.125",
+                               solid ? "Grid/Cells=2, 9, 2" : "Grid/Cells=8, 9",
+                               "Output/Reactions=load",
                                "Output/load/On=top",
+                               std::string("Output/load/Direction=0, 1") +
+                                 (solid ? ", 0" : ""),
                                "Boundary conditions/bottom/Type=slip",
                                "Boundary conditions/left/Type=slip",
                                "Boundary conditions/top/Type=normal "
@@ -49,8 +53,13 @@ namespace
                                "Boundary conditions/top/Value=-0.3*t",
                                "Boundary conditions/top/Moves the grid=true",
                                "Solver/Newton tolerance=1e-9",
-                               "Time/Time step=0.1"});
-    const auto &time = columns.at("time"), &load = columns.at("load");
+                               "Time/Time step=0.1"} +
+                       (solid ?
+                          Overrides{"Boundary conditions/back/Type=slip"} :
+                          Overrides{}) +
+                       overrides);
+    const double area = kind == "axisymmetric" ? dealii::numbers::PI : 1;
+    const auto  &time = columns.at("time"), &load = columns.at("load");
     for (unsigned int i = 0; i < time.size(); ++i)
       {
         const double closed = 0.3 * time[i] - gap;
@@ -62,7 +71,8 @@ namespace
         else if (const double height = 1 - std::max(closed, 0.);
                  method == "GIMP")
           {
-            EXPECT_NEAR(load[i], -std::log(height) / height, near) << time[i];
+            EXPECT_NEAR(load[i] / area, -std::log(height) / height, near)
+              << time[i];
           }
         else if (closed > 0.02)
           {
@@ -87,6 +97,42 @@ TEST(TouchingMpi, APlatenIsFeltWhereItIs)
   check_press("GIMP",
               {"Geometry/box/Lower corner=0, 0.125",
                "Geometry/box/Upper corner=1, 1.125"});
+  for (const std::string method : {"MPM", "GIMP"})
+    {
+      check_press(method, {}, "axisymmetric");
+      check_press<3>(method, {}, "3D");
+    }
+}
+
+
+// Another attempt at a step, which is shorter, need not reach the face.
+TEST(TouchingMpi, WhatLandsStaysIfTheStepIsMade)
+{
+  Model<2>   model(block_scene("plane strain"),
+                 {"Grid/Method=GIMP",
+                    "Grid/Upper corner=1, 1.06",
+                    "Grid/Cells=8, 9",
+                    "Boundary conditions/top/Type=fixed"});
+  auto      &points  = model.points;
+  const auto n_touch = [&]() {
+    unsigned int n = 0;
+    for (unsigned int p = 0; p < points.size(); ++p)
+      n += points.fields(p)[points.offset_touched] != 0;
+    return dealii::Utilities::MPI::sum(n, MPI_COMM_WORLD);
+  };
+  const std::vector<dealii::Tensor<1, 2>> ways(points.size(),
+                                               dealii::Point<2>(0, 0.1));
+  remember_touching(model.scene.faces, model.grid, points);
+  EXPECT_EQ(n_touch(), 0u);
+  const std::array<double, 4> faces = {{0, 1, 0, 1.06}};
+  for (const bool is_made : {false, true})
+    {
+      EXPECT_TRUE(land(model.scene.faces, faces, ways, points));
+      EXPECT_GE(n_touch(), 16u);
+      EXPECT_FALSE(land(model.scene.faces, faces, ways, points));
+      end_landing(is_made, points);
+      EXPECT_EQ(n_touch() > 0, is_made);
+    }
 }
 
 

@@ -1,6 +1,5 @@
 #include <impm/grid/touching.h>
 #include <impm/points/point_domains.h>
-#include <impm/points/point_fields.h>
 
 #include <algorithm>
 #include <cmath>
@@ -36,37 +35,20 @@ namespace impm
       return static_cast<unsigned int>(points.fields(p)[points.offset_touched]);
     }
 
-    /** Half of what a point takes up along an axis in its cell (m): of its box,
-     * or of one that is shaped like the cell and has its volume. */
-    template <int dim, typename Cell>
-    double
-    half_extent(const MaterialPoints<dim> &points,
-                const unsigned int         p,
-                const Cell                &cell,
-                const Point<dim>          &place,
-                const unsigned int         axis)
-    {
-      if (const auto domain = points.layout.find("initial_domain"))
-        return half_extents(points, p, *domain, true)[axis];
-      double part = present_measure(points, p, place);
-      for (unsigned int d = 0; d < dim; ++d)
-        part /= cell_extent(cell, d);
-      return 0.5 * cell_extent(cell, axis) * std::pow(part, 1. / dim);
-    }
-
     /** Between the box of a point, at `place`, and a face at `face_position`
      * (m). */
-    template <int dim, typename Cell>
+    template <int dim>
     double
     gap_to_face(const MaterialPoints<dim> &points,
                 const unsigned int         p,
-                const Cell                &cell,
                 const unsigned int         face,
                 const Point<dim>          &place,
                 const double               face_position)
     {
+      const auto half =
+        half_extents(points, p, points.layout.offset("initial_domain"), true);
       return (face % 2 == 0 ? 1 : -1) * (place[face / 2] - face_position) -
-             half_extent(points, p, cell, place, face / 2);
+             half[face / 2];
     }
 
     /** Calls `found` for each point that lies in the cells at a face of the
@@ -119,7 +101,7 @@ namespace impm
           const unsigned int f) {
         const double far =
           (bits_of(points, p) & touches(f)) != 0 ? farthest : closest;
-        if (gap_to_face(points, p, cell, f, x, grid.face_of_vertices(f)) <
+        if (gap_to_face(points, p, f, x, grid.face_of_vertices(f)) <
             far * cell_extent(cell, f / 2))
           bits[p] |= touches(f);
       });
@@ -142,11 +124,11 @@ namespace impm
       points,
       [&](const unsigned int p,
           const Point<dim>  &x,
-          const auto        &cell,
+          const auto & /*cell*/,
           const unsigned int f) {
         const unsigned int bits = bits_of(points, p);
         if ((bits & touches(f)) != 0 ||
-            gap_to_face(points, p, cell, f, x + increments[p], end[f]) >= 0)
+            gap_to_face(points, p, f, x + increments[p], end[f]) >= 0)
           return;
         points.fields(p)[points.offset_touched] =
           bits | touches(f) | lands<dim>(f);
@@ -199,10 +181,8 @@ namespace impm
         const double close =
           largest_gap -
           ((bits & lands<dim>(f)) != 0 && !grid.is_moved() ?
-             std::max(
-               0.,
-               gap_to_face(
-                 points, p, surrounding, f, x, grid.face_of_vertices(f))) :
+             std::max(0.,
+                      gap_to_face(points, p, f, x, grid.face_of_vertices(f))) :
              0.);
         const auto set = [&](const types::global_dof_index dof) {
           closeness(dof) = std::max(closeness(dof), close);

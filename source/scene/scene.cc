@@ -41,16 +41,22 @@ namespace impm
 
     /** Which faces hold by touch: that come to material, or to which it comes
      * without inertia. Not those that draw material away from themselves, nor
-     * walls from which it has to part again: what touches is glued. */
+     * walls from which it has to part again: what touches is glued. Points that
+     * do not split are too few to tell where a surface is that has folded. */
     template <int dim>
     void
     choose_touch(Scene<dim> &scene)
     {
+      if (scene.grid.is_lagrangian() ||
+          any_of(scene.bodies, [](const auto &body) {
+            return !body.rigid && body.adaptation < PointAdaptation::split;
+          }))
+        return;
       for (unsigned int f = 0; f < 2 * dim; ++f)
         {
           auto &face = scene.faces[f];
           face.holds_by_touch =
-            !scene.grid.is_lagrangian() && face.constrained[f / 2] &&
+            face.constrained[f / 2] &&
             (face.moves_grid || (!face.value && !scene.time.has_inertia()));
         }
     }

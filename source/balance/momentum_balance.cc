@@ -329,12 +329,14 @@ namespace impm
     for (const unsigned int node : unknowns.nodes)
       {
         result.places.push_back(place_of(node));
+        result.layers.push_back(nodes[node].layer);
         result.extents.push_back(nodes[node].extent);
       }
     const auto &carrier = parts.constraints.carrier;
     for (unsigned int i = 0; i < dim * nodes.size(); ++i)
       if (carrier[i] != StepConstraints<dim>::no_carrier)
-        result.prescribed.push_back({place_of(i / dim), i % dim});
+        result.prescribed.push_back(
+          {place_of(i / dim), nodes[i / dim].layer, i % dim});
     return result;
   }
 

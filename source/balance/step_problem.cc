@@ -60,6 +60,7 @@ namespace impm
                                 WorkCounts                &counts,
                                 const double               time,
                                 const double               dt,
+                                const SurfacePoints<dim>  *surfaces,
                                 const StepDamping         &damping)
     : time(time)
     , dt(dt)
@@ -76,6 +77,7 @@ namespace impm
                                             points,
                                             footprints,
                                             *discretization))
+    , scene(scene)
     , gathered(integrator.has_inertia() ?
                  gather_motion(
                    points, scene.bodies, footprints, grid, *discretization) :
@@ -123,6 +125,17 @@ namespace impm
                                            time,
                                            time + dt) :
               nullptr)
+    , contact(surfaces ? std::make_unique<Contact<dim>>(
+                           ContactLinks<dim>(scene,
+                                             grid,
+                                             *surfaces,
+                                             rigid,
+                                             populated,
+                                             *discretization,
+                                             builder,
+                                             time,
+                                             dt)) :
+                         nullptr)
     , start_forces(find_start_forces())
     , start_acceleration(find_start_acceleration())
     , nodal_forces(make_nodal_forces(points,
@@ -136,8 +149,10 @@ namespace impm
     , balance({*discretization,
                constraints,
                norm.get(),
-               those_that_are(
-                 {internal_forces.get(), ghost_penalty.get(), loads.get()}),
+               those_that_are({internal_forces.get(),
+                               ghost_penalty.get(),
+                               loads.get(),
+                               contact.get()}),
                those_that_are({nodal_forces.get()}),
                start_forces,
                motion.mass,
@@ -178,7 +193,7 @@ namespace impm
       return forces;
     discretization->initialize(forces);
     for (const Term *term :
-         those_that_are({internal_forces.get(), loads.get()}))
+         those_that_are({internal_forces.get(), loads.get(), contact.get()}))
       term->add_start_force(forces);
     forces.compress(VectorOperation::add);
     discretization->condense_hanging(forces);
@@ -299,6 +314,31 @@ namespace impm
       if (constraints.is_constrained[i])
         forces.local_element(i) += held_inertia(u, i);
     return forces;
+  }
+
+  template <int dim>
+  double
+  StepProblem<dim>::reaction(const std::string         &name,
+                             const Vector              &end_forces,
+                             const std::vector<double> &direction) const
+  {
+    double force = constraints.sum_over(name, end_forces, direction);
+    if (!contact)
+      return force;
+    Tensor<1, dim> of_contact;
+    for (unsigned int q = 0; q < scene.contact.pairs.size(); ++q)
+      {
+        const auto &pair = scene.contact.pairs[q];
+        if (pair.partner_kind != PartnerKind::deformable &&
+            name == (pair.partner_kind == PartnerKind::face ?
+                       scene.faces[pair.partner].name :
+                       scene.bodies[pair.partner].name))
+          of_contact -= contact->force_on_partner(q);
+      }
+    of_contact = Utilities::MPI::sum(of_contact, discretization->communicator);
+    for (unsigned int d = 0; d < dim; ++d)
+      force += of_contact[d] * direction[d];
+    return force;
   }
 
   template <int dim>

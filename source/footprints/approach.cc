@@ -12,8 +12,8 @@ namespace impm
   {
     constexpr double none = std::numeric_limits<double>::max();
 
-    /** Lowest and highest number of those that touch a node; in its first
-     * component. Ghosts are up to date. */
+    /** Lowest and highest number of those that touch a node of any layer; in
+     * the first component of that in the first. Ghosts are up to date. */
     template <int dim>
     struct Touched
     {
@@ -91,7 +91,7 @@ namespace impm
            discretization.dof_handler().active_cell_iterators())
         if (cell->is_locally_owned())
           {
-            const auto nodes = discretization.nodes_of(cell);
+            const auto nodes = discretization.nodes_of(cell, 0);
             Pair       pair(none, -1);
             for (const auto node : nodes)
               pair = {std::min(pair.first, touched[node].first),
@@ -120,14 +120,18 @@ namespace impm
           if (footprints.touches(e, n))
             {
               const double body = points.body(footprints.point[e]);
-              touched.add(cell.nodes[n], body, body);
+              touched.add(discretization.in_first_layer(cell.nodes[n]),
+                          body,
+                          body);
             }
     for (unsigned int i = 0;
          i < discretization.locally_owned_dofs().n_elements();
          ++i)
       if (const auto wall = constraints.wall[i];
           wall != StepConstraints<dim>::no_carrier)
-        touched.add(i / dim, n_bodies + wall, n_bodies + wall);
+        touched.add(discretization.in_first_layer(i / dim),
+                    n_bodies + wall,
+                    n_bodies + wall);
     touched.exchange();
 
     const Pairs meet = find_pairs(touched, discretization),

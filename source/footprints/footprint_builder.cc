@@ -28,6 +28,7 @@ namespace impm
     cut(const typename CellsAtVertices<dim>::CellIterator &cell,
         const Discretization<dim>                         &discretization,
         const unsigned int                                 p,
+        const unsigned int                                 layer,
         const Point<dim>                                  &lower,
         const Point<dim>                                  &upper,
         std::vector<typename Footprints<dim>::Piece>      &pieces)
@@ -48,7 +49,8 @@ namespace impm
           weight *= share;
           centroid[d] = (0.5 * (from + to) - start) / extent;
         }
-      pieces.push_back({p, discretization.with_dofs(cell), weight, centroid});
+      pieces.push_back(
+        {p, layer, discretization.with_dofs(cell), weight, centroid});
       return weight;
     }
   } // namespace
@@ -177,6 +179,7 @@ namespace impm
           keeps_motion ? place_in(cell, unit) : particle.get_location();
         double             radius = x[0];
         const unsigned int first  = pieces.size();
+        const unsigned int layer  = points.layer(p);
         if (has_boxes)
           {
             if (around.cells.empty() || cell != current)
@@ -214,10 +217,12 @@ namespace impm
             radius     = (lower[0] + upper[0]) / 2;
             double sum = 0;
             if (inside)
-              sum = cut<dim>(cell, discretization, p, lower, upper, pieces);
+              sum =
+                cut<dim>(cell, discretization, p, layer, lower, upper, pieces);
             else
               for (const auto &other : cells)
-                sum += cut(other, discretization, p, lower, upper, pieces);
+                sum +=
+                  cut(other, discretization, p, layer, lower, upper, pieces);
             for (unsigned int i = first; i < pieces.size(); ++i)
               pieces[i].weight /= sum;
             if (at_face)
@@ -225,17 +230,22 @@ namespace impm
                 const unsigned int begin = middles.size();
                 double             total = 0;
                 for (const auto &other : cells)
-                  total += cut(
-                    other, discretization, p, x - middle, x + middle, middles);
+                  total += cut(other,
+                               discretization,
+                               p,
+                               layer,
+                               x - middle,
+                               x + middle,
+                               middles);
                 for (unsigned int i = begin; i < middles.size(); ++i)
                   middles[i].weight /= total;
                 if (middles.size() == begin)
-                  middles.push_back({p, cell, 1., unit});
+                  middles.push_back({p, layer, cell, 1., unit});
               }
           }
         // A box without extent, too, is a point.
         if (pieces.size() == first)
-          pieces.push_back({p, cell, 1., unit});
+          pieces.push_back({p, layer, cell, 1., unit});
         if (points.layout.geometry == GeometryKind::axisymmetric)
           footprints.inverse_radius.push_back(1 / radius);
         ++p;
@@ -246,6 +256,53 @@ namespace impm
         footprints.middles = std::make_shared<Footprints<dim>>();
         footprints.middles->build(middles, p, discretization, false);
       }
+    return footprints;
+  }
+
+  template <int dim>
+  Footprints<dim>
+  FootprintBuilder<dim>::build_at(const std::vector<Place>  &places,
+                                  const PopulatedCells<dim> &populated,
+                                  const Discretization<dim> &discretization)
+  {
+    std::vector<typename Footprints<dim>::Piece> pieces;
+    Surroundings                                 around;
+    for (unsigned int p = 0; p < places.size(); ++p)
+      {
+        const auto &[x, place_cell, layer] = places[p];
+        if (!layer)
+          continue;
+        auto        cell      = discretization.with_dofs(place_cell);
+        const auto &stiffness = populated.stiffness[*layer];
+        if (stiffness[cell->active_cell_index()] == 0)
+          {
+            find_surroundings(cell, discretization, around);
+            double nearest = std::numeric_limits<double>::max();
+            for (const auto &other : around.cells)
+              if (stiffness[other->active_cell_index()] > 0)
+                {
+                  double square = 0;
+                  for (unsigned int d = 0; d < dim; ++d)
+                    {
+                      const double from = other->vertex(0)[d] - x[d];
+                      const double beyond =
+                        std::max({0., from, -from - cell_extent(other, d)});
+                      square += beyond * beyond;
+                    }
+                  if (square < nearest)
+                    {
+                      nearest = square;
+                      cell    = discretization.with_dofs(other);
+                    }
+                }
+          }
+        Point<dim> unit;
+        for (unsigned int d = 0; d < dim; ++d)
+          unit[d] = (x[d] - cell->vertex(0)[d]) / cell_extent(cell, d);
+        pieces.push_back({p, *layer, cell, 1., unit});
+      }
+    Footprints<dim> footprints;
+    footprints.build(pieces, places.size(), discretization, false);
     return footprints;
   }
 

@@ -52,9 +52,9 @@ namespace impm
                  double                                *values,
                  double                                *gradients)
     {
-      using Info                          = GeometryInfo<dim>;
-      const auto                    nodes = discretization.nodes_of(piece.cell);
-      constexpr unsigned int        n     = Footprints<dim>::n_nodes;
+      using Info       = GeometryInfo<dim>;
+      const auto nodes = discretization.nodes_of(piece.cell, piece.layer);
+      constexpr unsigned int        n = Footprints<dim>::n_nodes;
       std::array<Tensor<1, dim>, n> slopes;
       Tensor<2, dim>                jacobian; // d x_i / d xi_j
       for (unsigned int v = 0; v < n; ++v)
@@ -81,24 +81,33 @@ namespace impm
                          const Discretization<dim> &discretization,
                          const bool                 any_corners)
   {
-    const unsigned int        n       = pieces.size();
-    const unsigned int        no_slot = numbers::invalid_unsigned_int;
+    const unsigned int        n        = pieces.size();
+    const unsigned int        no_slot  = numbers::invalid_unsigned_int;
+    const unsigned int        n_layers = discretization.numbering->n_layers;
     std::vector<unsigned int> slots(
-      discretization.numbering->triangulation.n_active_cells(), no_slot);
+      n_layers * discretization.numbering->triangulation.n_active_cells(),
+      no_slot);
+    const auto slot_of = [&](const Piece &piece) -> unsigned int & {
+      return slots[n_layers * piece.cell->active_cell_index() + piece.layer];
+    };
 
     // Cells in the order in which they appear, and how many entries each has.
     for (const auto &piece : pieces)
       {
         const auto   &cell = piece.cell;
-        unsigned int &slot = slots[cell->active_cell_index()];
+        unsigned int &slot = slot_of(piece);
         if (slot == no_slot)
           {
             slot          = cells.size();
             double extent = cell_extent(cell, 0);
             for (unsigned int d = 1; d < dim; ++d)
               extent = std::min(extent, cell_extent(cell, d));
-            cells.push_back(
-              {cell, discretization.nodes_of(cell), 0, 0, extent});
+            cells.push_back({cell,
+                             piece.layer,
+                             discretization.nodes_of(cell, piece.layer),
+                             0,
+                             0,
+                             extent});
           }
         ++cells[slot].end;
       }
@@ -119,7 +128,7 @@ namespace impm
     first.assign(n_points + 1, 0);
     for (const auto &piece : pieces)
       {
-        const unsigned int slot = slots[piece.cell->active_cell_index()];
+        const unsigned int slot = slot_of(piece);
         const unsigned int e    = cells[slot].end++;
         cell_of_entry[e]        = slot;
         point[e]                = piece.point;

@@ -51,7 +51,8 @@ namespace impm
       }
     place_vertices();
     current = std::make_shared<Discretization<dim>>(
-      std::make_shared<NodeNumbering<dim>>(triangulation, coarse_cells, 1),
+      std::make_shared<NodeNumbering<dim>>(
+        triangulation, coarse_cells, spec.n_layers, 1),
       state.displacement);
     moved = is_lagrangian;
     if (moved)
@@ -148,6 +149,7 @@ namespace impm
     current = std::make_shared<Discretization<dim>>(
       std::make_shared<NodeNumbering<dim>>(triangulation,
                                            coarse_cells,
+                                           spec.n_layers,
                                            current->numbering->epoch + 1),
       state.displacement);
   }
@@ -181,7 +183,8 @@ namespace impm
     triangulation.load(file_name);
     place_vertices();
     current = std::make_shared<Discretization<dim>>(
-      std::make_shared<NodeNumbering<dim>>(triangulation, coarse_cells, epoch),
+      std::make_shared<NodeNumbering<dim>>(
+        triangulation, coarse_cells, spec.n_layers, epoch),
       state.displacement);
   }
 

@@ -46,13 +46,15 @@ namespace impm
   NodeNumbering<dim>::NodeNumbering(
     const parallel::TriangulationBase<dim> &triangulation,
     const std::vector<unsigned int>        &coarse_cells,
+    const unsigned int                      n_layers,
     const unsigned int                      epoch)
     : epoch(epoch)
+    , n_layers(n_layers)
     , triangulation(triangulation)
     , dof_handler(triangulation)
     , any_hanging(triangulation.has_hanging_nodes())
   {
-    dof_handler.distribute_dofs(FESystem<dim>(FE_Q<dim>(1), dim));
+    dof_handler.distribute_dofs(FESystem<dim>(FE_Q<dim>(1), dim * n_layers));
     const IndexSet &owned = dof_handler.locally_owned_dofs();
     locally_relevant_dofs =
       DoFTools::extract_locally_relevant_dofs(dof_handler);
@@ -101,7 +103,7 @@ namespace impm
       if (!cell->is_artificial())
         finest = std::max(finest, cell->level());
     finest = Utilities::MPI::max(finest, communicator);
-    lattice.resize(owned.n_elements() / dim, {{}, 1 << finest});
+    lattice.resize(owned.n_elements() / dim, {{}, 1 << finest, 0});
     for (const auto &cell : dof_handler.active_cell_iterators())
       if (!cell->is_artificial())
         {
@@ -109,16 +111,19 @@ namespace impm
           const auto corner =
             corner_on_lattice<dim>(cell, coarse_cells, extent);
           for (const unsigned int v : cell->vertex_indices())
-            {
-              const unsigned int node =
-                partitioner->global_to_local(cell->vertex_dof_index(v, 0)) /
-                dim;
-              if (node >= lattice.size())
-                continue;
-              lattice[node].extent = std::min(lattice[node].extent, extent);
-              for (unsigned int d = 0; d < dim; ++d)
-                lattice[node].place[d] = corner[d] + (v >> d & 1u) * extent;
-            }
+            for (unsigned int layer = 0; layer < n_layers; ++layer)
+              {
+                const unsigned int node =
+                  partitioner->global_to_local(
+                    cell->vertex_dof_index(v, dim * layer)) /
+                  dim;
+                if (node >= lattice.size())
+                  continue;
+                lattice[node].layer  = layer;
+                lattice[node].extent = std::min(lattice[node].extent, extent);
+                for (unsigned int d = 0; d < dim; ++d)
+                  lattice[node].place[d] = corner[d] + (v >> d & 1u) * extent;
+              }
         }
   }
 
@@ -135,11 +140,15 @@ namespace impm
     for (const auto &cell : dof_handler().active_cell_iterators())
       if (!cell->is_artificial())
         {
-          const auto nodes = nodes_of(cell);
-          for (const unsigned int v : cell->vertex_indices())
-            for (unsigned int d = 0; d < dim; ++d)
-              coordinates.local_element(dim * nodes[v] + d) =
-                cell->vertex(v)[d];
+          for (unsigned int layer = 0; layer < this->numbering->n_layers;
+               ++layer)
+            {
+              const auto nodes = nodes_of(cell, layer);
+              for (const unsigned int v : cell->vertex_indices())
+                for (unsigned int d = 0; d < dim; ++d)
+                  coordinates.local_element(dim * nodes[v] + d) =
+                    cell->vertex(v)[d];
+            }
           if (cell->is_locally_owned())
             for (unsigned int d = 0; d < dim; ++d)
               smallest_cell_extent =

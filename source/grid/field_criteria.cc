@@ -119,17 +119,19 @@ namespace impm
     std::array<Vector, weight / dim + 1> averages;
     for (auto &average : averages)
       discretization->initialize(average);
-    const auto for_nodes = [&](const auto &particle, const auto &action) {
-      const auto cell = particle.get_surrounding_cell();
-      const auto nodes =
-        discretization->nodes_of(discretization->with_dofs(cell));
-      Point<dim> unit;
-      for (unsigned int d = 0; d < dim; ++d)
-        unit[d] = (particle.get_location()[d] - cell->vertex(0)[d]) /
-                  cell_extent(cell, d);
-      for (const auto v : cell->vertex_indices())
-        action(nodes[v], GeometryInfo<dim>::d_linear_shape_function(unit, v));
-    };
+    const auto for_nodes =
+      [&](const unsigned int p, const auto &particle, const auto &action) {
+        const auto cell = particle.get_surrounding_cell();
+        const auto nodes =
+          discretization->nodes_of(discretization->with_dofs(cell),
+                                   points.layer(p));
+        Point<dim> unit;
+        for (unsigned int d = 0; d < dim; ++d)
+          unit[d] = (particle.get_location()[d] - cell->vertex(0)[d]) /
+                    cell_extent(cell, d);
+        for (const auto v : cell->vertex_indices())
+          action(nodes[v], GeometryInfo<dim>::d_linear_shape_function(unit, v));
+      };
     const auto entry = [&](const unsigned int node,
                            const unsigned int c) -> double & {
       return averages[c / dim].local_element(dim * node + c % dim);
@@ -141,7 +143,7 @@ namespace impm
     std::vector<std::array<double, weight>> stresses(points.size());
     for_points(state, [&](const unsigned int p, const auto &particle) {
       field.evaluate(p, particle.get_location(), stresses[p].data());
-      for_nodes(particle, [&](const unsigned int node, const double shape) {
+      for_nodes(p, particle, [&](const unsigned int node, const double shape) {
         for (unsigned int c = 0; c < weight; ++c)
           entry(node, c) += volume(p) * shape * stresses[p][c];
         entry(node, weight) += volume(p) * shape;
@@ -164,7 +166,7 @@ namespace impm
     double              sums[3] = {}; // of errors, stresses, cells
     for_points(state, [&](const unsigned int p, const auto &particle) {
       std::array<double, weight> difference = stresses[p];
-      for_nodes(particle, [&](const unsigned int node, const double shape) {
+      for_nodes(p, particle, [&](const unsigned int node, const double shape) {
         for (unsigned int c = 0; c < weight; ++c)
           difference[c] -= shape * entry(node, c);
       });

@@ -40,9 +40,12 @@ namespace impm
     void
     change_cells(MaterialPoints<dim>         &points,
                  RigidBodies<dim>            &rigid,
+                 SurfacePoints<dim>          *surfaces,
                  const std::function<void()> &change)
     {
       std::vector<SortedParticles<dim> *> all = {&points.sorted};
+      if (surfaces)
+        all.push_back(&surfaces->sorted);
       for (const auto &body : rigid.bodies)
         all.push_back(body.points.get());
       for (auto *some : all)
@@ -52,6 +55,8 @@ namespace impm
         some->particles.unpack_after_coarsening_and_refinement();
       points.sort();
       rigid.sort();
+      if (surfaces)
+        surfaces->sort();
     }
   } // namespace
 
@@ -59,20 +64,22 @@ namespace impm
   void
   adapt_grid(BackgroundGrid<dim> &grid,
              MaterialPoints<dim> &points,
-             RigidBodies<dim>    &rigid)
+             RigidBodies<dim>    &rigid,
+             SurfacePoints<dim>  *surfaces)
   {
     if (grid.is_moved())
       throw ComputationError("the cells of a grid that is moved cannot change");
-    change_cells<dim>(points, rigid, [&]() { grid.adapt(); });
+    change_cells<dim>(points, rigid, surfaces, [&]() { grid.adapt(); });
   }
 
   template <int dim>
   void
   repartition_grid(BackgroundGrid<dim> &grid,
                    MaterialPoints<dim> &points,
-                   RigidBodies<dim>    &rigid)
+                   RigidBodies<dim>    &rigid,
+                   SurfacePoints<dim>  *surfaces)
   {
-    change_cells<dim>(points, rigid, [&]() { grid.repartition(); });
+    change_cells<dim>(points, rigid, surfaces, [&]() { grid.repartition(); });
   }
 
   template class GridPolicy<2>;

@@ -12,8 +12,10 @@ namespace impm
                                       const MaterialPoints<dim> &points,
                                       const Discretization<dim> &discretization)
   {
-    const auto &triangulation = discretization.numbering->triangulation;
-    stiffness.resize(triangulation.n_active_cells());
+    const auto        &triangulation = discretization.numbering->triangulation;
+    const unsigned int n_layers      = discretization.numbering->n_layers;
+    stiffness.assign(n_layers,
+                     std::vector<double>(triangulation.n_active_cells()));
     cells.reserve(footprints.cells.size());
     for (const auto &cell : footprints.cells)
       {
@@ -21,33 +23,40 @@ namespace impm
         for (unsigned int e = cell.begin; e < cell.end; ++e)
           smallest = std::min(smallest,
                               points.material(footprints.point[e]).stiffness());
-        stiffness[cell.cell->active_cell_index()] = smallest;
+        stiffness[cell.layer][cell.cell->active_cell_index()] = smallest;
         if (cell.cell->is_locally_owned())
-          cells.push_back({cell.cell, cell.nodes});
+          cells.push_back({cell.cell, cell.layer, cell.nodes});
       }
     if (Utilities::MPI::n_mpi_processes(discretization.communicator) == 1)
       return;
 
     // A point near the border of a rank touches cells of its neighbour. The
     // largest compliance survives the exchange, and zero means empty.
-    Vector compliance(
-      triangulation.global_active_cell_index_partitioner().lock());
-    for (const auto &cell : footprints.cells)
-      compliance(cell.cell->global_active_cell_index()) =
-        1 / stiffness[cell.cell->active_cell_index()];
-    compliance.compress(VectorOperation::max);
-    compliance.update_ghost_values();
-    for (const auto &cell :
-         discretization.dof_handler().active_cell_iterators())
-      if (!cell->is_artificial())
-        if (const double value = compliance(cell->global_active_cell_index());
-            value > 0)
-          {
-            double &here = stiffness[cell->active_cell_index()];
-            if (here == 0 && cell->is_locally_owned())
-              cells.push_back({cell, discretization.nodes_of(cell)});
-            here = 1 / value;
-          }
+    for (unsigned int layer = 0; layer < n_layers; ++layer)
+      {
+        auto  &of_layer = stiffness[layer];
+        Vector compliance(
+          triangulation.global_active_cell_index_partitioner().lock());
+        for (const auto &cell : footprints.cells)
+          if (cell.layer == layer)
+            compliance(cell.cell->global_active_cell_index()) =
+              1 / of_layer[cell.cell->active_cell_index()];
+        compliance.compress(VectorOperation::max);
+        compliance.update_ghost_values();
+        for (const auto &cell :
+             discretization.dof_handler().active_cell_iterators())
+          if (!cell->is_artificial())
+            if (const double value =
+                  compliance(cell->global_active_cell_index());
+                value > 0)
+              {
+                double &here = of_layer[cell->active_cell_index()];
+                if (here == 0 && cell->is_locally_owned())
+                  cells.push_back(
+                    {cell, layer, discretization.nodes_of(cell, layer)});
+                here = 1 / value;
+              }
+      }
   }
 
   template class PopulatedCells<2>;

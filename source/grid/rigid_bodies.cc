@@ -39,7 +39,7 @@ namespace impm
           BoundingBox<dim> box;
           if (grid.is_lagrangian)
             box = *spec.shape->bounding_box;
-          else
+          else if (!spec.meets_surfaces)
             points->insert(seed_body(specs, spec, geometry, grid));
           points->sort();
           bodies.push_back({&spec, std::move(points), box});

@@ -102,37 +102,45 @@ namespace impm
   StepConstraints<dim>::hold_faces(const TouchedNodes<dim> *touched,
                                    Vector                  &carriers) const
   {
+    const auto hold = [&](const auto &face, const unsigned int layer) {
+      const unsigned int f = face->boundary_id(), first = dim * layer;
+      for (const unsigned int v : face->vertex_indices())
+        {
+          if (touched && faces[f].holds_by_touch &&
+              !touched->are_held(face->vertex_dof_index(v, first + f / 2)))
+            continue;
+          for (unsigned int c = 0; c < dim; ++c)
+            if (faces[f].constrained[c])
+              {
+                double &value = carriers(face->vertex_dof_index(v, first + c));
+                value         = std::max(value, f + 1.);
+              }
+        }
+    };
     for (const auto &cell :
          discretization.dof_handler().active_cell_iterators())
       if (cell->is_locally_owned() && cell->at_boundary())
         for (const auto &face : cell->face_iterators())
           if (face->at_boundary())
-            for (const unsigned int v : face->vertex_indices())
-              {
-                const unsigned int f = face->boundary_id();
-                if (touched && faces[f].holds_by_touch &&
-                    !touched->are_held(face->vertex_dof_index(v, f / 2)))
-                  continue;
-                for (unsigned int c = 0; c < dim; ++c)
-                  if (faces[f].constrained[c])
-                    {
-                      double &value = carriers(face->vertex_dof_index(v, c));
-                      value         = std::max(value, f + 1.);
-                    }
-              }
+            for (unsigned int layer = 0;
+                 layer < discretization.numbering->n_layers;
+                 ++layer)
+              if (faces[face->boundary_id()].holds_layer(layer))
+                hold(face, layer);
   }
 
   template <int dim>
   void
   StepConstraints<dim>::hold_rigid_bodies(Vector &carriers) const
   {
-    const auto &hanging_nodes = discretization.numbering->hanging_nodes;
+    const auto        &hanging_nodes = discretization.numbering->hanging_nodes;
+    const unsigned int n_layers      = discretization.numbering->n_layers;
     for (unsigned int b = 0; b < rigid.bodies.size(); ++b)
       {
         const unsigned int normal = rigid.bodies[b].spec->slip_normal;
         const double       value  = 2 * dim + b + 1;
         const auto         holds  = [&](const unsigned int component) {
-          return normal == dim || normal == component;
+          return normal == dim || normal == component % dim;
         };
         if (grid.is_lagrangian)
           for (unsigned int i = 0; i < carriers.locally_owned_size(); ++i)
@@ -148,7 +156,7 @@ namespace impm
             last            = surrounding;
             const auto cell = discretization.with_dofs(surrounding);
             for (const unsigned int v : cell->vertex_indices())
-              for (unsigned int c = 0; c < dim; ++c)
+              for (unsigned int c = 0; c < dim * n_layers; ++c)
                 if (holds(c))
                   {
                     const auto dof = cell->vertex_dof_index(v, c);

@@ -190,7 +190,8 @@ namespace impm
         const auto cell = discretization.with_dofs(surrounding);
         for (const unsigned int v : cell->face(f)->vertex_indices())
           {
-            const auto dof = cell->face(f)->vertex_dof_index(v, f / 2);
+            const auto dof =
+              cell->face(f)->vertex_dof_index(v, dim * points.layer(p) + f / 2);
             set(dof);
             // A hanging node is held by holding its masters.
             if (hanging.is_constrained(dof))

@@ -34,6 +34,7 @@ namespace impm
     grid_resets += before.grid_resets;
     unstable += before.unstable;
     damped += before.damped;
+    smallest_gap = std::min(smallest_gap, before.smallest_gap);
   }
 
   namespace
@@ -49,6 +50,7 @@ namespace impm
              const double         start_kinetic_energy,
              const double         energy_gain,
              const double         drift,
+             const bool           has_contact,
              const Figures       &figures)
     {
       Figures row = {{"step", report.step},
@@ -90,7 +92,8 @@ namespace impm
                   {"internal_work", report.internal_work},
                   {"transfer_loss",
                    report.external_work - report.stabilization_work -
-                     report.internal_work + report.resampling_kinetic_energy -
+                     report.internal_work - report.contact_work +
+                     report.resampling_kinetic_energy -
                      (totals.kinetic_energy - start_kinetic_energy)},
                   {"splits", report.splits},
                   {"merges", report.merges},
@@ -107,6 +110,10 @@ namespace impm
                   {"pieces", report.pieces},
                   {"flow_share", report.flow_share},
                   {"step_error", report.step_error}});
+      if (has_contact)
+        row.insert(row.end(),
+                   {{"contact_work", report.contact_work},
+                    {"smallest_gap", report.smallest_gap}});
       return row;
     }
 
@@ -175,8 +182,16 @@ namespace impm
     for (const auto &reaction : scene.output.reactions)
       figures.emplace_back(reaction.name, 0);
     std::vector<std::string> names;
-    for (const auto &column :
-         make_row<dim>(scene.geometry, {}, 0, {}, {}, 0, 0, 0, figures))
+    for (const auto &column : make_row<dim>(scene.geometry,
+                                            {},
+                                            0,
+                                            {},
+                                            {},
+                                            0,
+                                            0,
+                                            0,
+                                            !scene.contact.pairs.empty(),
+                                            figures))
       names.push_back(column.first);
     return names;
   }
@@ -190,6 +205,7 @@ namespace impm
     , bodies(scene.bodies)
     , points(points)
     , grid(grid)
+    , has_contact(!scene.contact.pairs.empty())
     , names(column_names(scene))
     , followed(scene.output.probes.size(), -1)
     , reactions(scene.output.reactions.size())
@@ -277,8 +293,8 @@ namespace impm
           std::sqrt(std::inner_product(n.begin(), n.end(), n.begin(), 0.));
         // What the carrier exerts balances the material: the force on it is
         // the opposite.
-        reactions[r] = -spec.factor / norm *
-                       problem.constraints.sum_over(spec.on, forces, n);
+        reactions[r] =
+          -spec.factor / norm * problem.reaction(spec.on, forces, n);
       }
   }
 
@@ -321,6 +337,7 @@ namespace impm
                               start_kinetic_energy,
                               budget.gain,
                               drift,
+                              has_contact,
                               figures);
     std::ostringstream line;
     line << std::setprecision(12);

@@ -165,12 +165,20 @@ namespace impm
     DataOut<dim> grid_writer;
     grid_writer.set_flags(writer.flags);
     grid_writer.attach_dof_handler(discretization->dof_handler());
+    // Of every layer of nodes, the first under the name alone.
     const auto add_vector = [&](const Vector &v, const std::string &name) {
+      std::vector<std::string> components;
+      for (unsigned int l = 0; l < discretization->numbering->n_layers; ++l)
+        components.insert(components.end(),
+                          dim,
+                          l == 0 ? name :
+                                   name + "_of_layer_" + std::to_string(l));
       grid_writer.add_data_vector(
         discretization->dof_handler(),
         v,
-        std::vector<std::string>(dim, name),
-        std::vector<Kind>(dim, Kind::component_is_part_of_vector));
+        components,
+        std::vector<Kind>(components.size(),
+                          Kind::component_is_part_of_vector));
     };
     Vector increment;
     if (u != nullptr)

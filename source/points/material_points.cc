@@ -276,6 +276,7 @@ namespace impm
             seed_body(bodies, body, layout.geometry, grid, is_draft), fill);
         materials.push_back(body.material);
         names.push_back(body.name);
+        layers.push_back(body.layer);
       }
     if (sorted.are_in_order())
       take_addresses();

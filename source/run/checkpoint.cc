@@ -46,12 +46,16 @@ namespace impm
     /** In the order in which they are written and read. */
     template <int dim>
     std::vector<Particles::ParticleHandler<dim> *>
-    all_particles(MaterialPoints<dim> &points, RigidBodies<dim> &rigid)
+    all_particles(MaterialPoints<dim> &points,
+                  RigidBodies<dim>    &rigid,
+                  SurfacePoints<dim>  *surfaces)
     {
       std::vector<Particles::ParticleHandler<dim> *> all = {
         &points.sorted.particles};
       for (const auto &body : rigid.bodies)
         all.push_back(&body.points->particles);
+      if (surfaces)
+        all.push_back(&surfaces->sorted.particles);
       return all;
     }
 
@@ -141,7 +145,7 @@ namespace impm
   Simulation<dim>::save_checkpoint(const std::string &reason)
   {
     TimerOutput::Scope scope(timer, "checkpoint");
-    const auto         all   = all_particles(points, rigid);
+    const auto         all   = all_particles(points, rigid, surfaces.get());
     const auto         bytes = largest_size(grid, all);
     const bool first = Utilities::MPI::this_mpi_process(communicator) == 0;
 
@@ -242,9 +246,11 @@ namespace impm
     require_fields(header.fields, names_of(points.layout.fields()));
 
     grid.load(path + ".grid", header.faces_of_vertices, header.is_moved);
-    for (auto *particles : all_particles(points, rigid))
+    for (auto *particles : all_particles(points, rigid, surfaces.get()))
       particles->deserialize();
     points.sort();
+    if (surfaces)
+      surfaces->sort();
     // With unknowns of its own, as those of the grid go when it is
     // repartitioned.
     DoFHandler<dim> nodes(grid.triangulation);
@@ -275,7 +281,7 @@ namespace impm
             {&vectors[0], &vectors[1], &vectors[2], &vectors[3]});
         // Sums in another order would differ by round-off.
         balance.impose(header.shares);
-        repartition_grid(grid, points, rigid);
+        repartition_grid(grid, points, rigid, surfaces.get());
         balance.impose({});
         if (header.is_moved)
           {

@@ -26,6 +26,8 @@ namespace impm
     const auto &motion = problem->motion;
     double      gain =
       problem->response.potential - problem->response.start_potential;
+    if (problem->contact)
+      gain += problem->contact->energy_gain();
     for (unsigned int i = 0; i < motion.velocity.locally_owned_size(); ++i)
       {
         const double v = motion.velocity.local_element(i);

@@ -115,6 +115,9 @@ namespace impm
     for (unsigned int b = 0; b < n; ++b)
       {
         group[b] = sets.find_set(b);
+        for (const auto &pair : problem.scene.contact.pairs)
+          if (pair.body == b && pair.partner_kind != PartnerKind::deformable)
+            free[group[b]] = false; // wherever that is
         for (unsigned int r = 0; r < n_rigid; ++r)
           if (boxes.meet(b, n + r))
             free[group[b]] = false;

@@ -146,6 +146,24 @@ namespace impm
 
   template <int dim>
   void
+  Simulation<dim>::watch_contact()
+  {
+    if (!problem->contact)
+      return;
+    report.contact_work = work.contact;
+    report.smallest_gap =
+      Utilities::MPI::min(std::min(1., problem->contact->smallest_gap()),
+                          communicator);
+    if (report.smallest_gap <= -1)
+      warn("surfaces in each other",
+           "surfaces have passed into each other at t = " +
+             Utilities::to_string(time + report.dt) +
+             " s: steps are too long for what comes together, or the pressure "
+             "is beyond the modulus of the material");
+  }
+
+  template <int dim>
+  void
   Simulation<dim>::watch_faces()
   {
     if (std::none_of(scene.faces.begin(),
@@ -306,7 +324,11 @@ namespace impm
   template void
   Simulation<2>::watch_faces();
   template void
+  Simulation<2>::watch_contact();
+  template void
   Simulation<3>::watch_faces();
+  template void
+  Simulation<3>::watch_contact();
   template void
   Simulation<2>::watch_pieces();
   template void

@@ -74,6 +74,10 @@ namespace impm
     , policy(other_policy ? std::move(other_policy) : make_policy(scene))
     , points(seed_points(scene, *policy, grid))
     , rigid(scene.bodies, scene.geometry, grid)
+    , surfaces(scene.contact.pairs.empty() ?
+                 nullptr :
+                 std::make_unique<SurfacePoints<dim>>(
+                   scene.contact, scene.bodies, scene.geometry, grid))
     , balance(grid, points)
     , integrator(make_time_integrator(scene.time))
     , control(scene.time, integrator->order())
@@ -120,7 +124,7 @@ namespace impm
              ++i)
           {
             problem.reset();
-            adapt_grid(grid, points, rigid);
+            adapt_grid(grid, points, rigid, surfaces.get());
             resample();
           }
       }
@@ -129,7 +133,7 @@ namespace impm
         std::max(scene.grid.largest_imbalance, 1.1 * best_imbalance))
       {
         problem.reset();
-        repartition_grid(grid, points, rigid);
+        repartition_grid(grid, points, rigid, surfaces.get());
         best_imbalance = report.imbalance = balance.imbalance();
       }
   }
@@ -195,6 +199,7 @@ namespace impm
         counts,
         time,
         dt,
+        surfaces.get(),
         jump.damping(grid.discretization()->smallest_cell_extent));
     }
     const auto solution =
@@ -223,7 +228,10 @@ namespace impm
       return solution.failure;
     problem->footprints.move_points(result.increment, increments);
     // Of one step, as ever, unless the grid has moved.
+    // Surfaces that come to each other see no further than a cell.
     const double most = is_off_grid() ? scene.grid.reset_motion :
+                        surfaces && surfaces->sees_others ?
+                                        0.5 :
                                         std::max(1., scene.grid.reset_motion);
     const auto   motion =
       motion_through_grid(*problem, increments, grid, points, *policy, most);
@@ -354,6 +362,7 @@ namespace impm
     report.internal_work      = work.internal;
     report.stabilization_work = work.stabilization;
     report.uncertain_work     = work.uncertain;
+    watch_contact();
     history.take_figures(*problem, end_forces);
     watch_faces();
     // While points are in the order of their footprints.
@@ -386,6 +395,8 @@ namespace impm
     const double       end = time + report.dt;
     is_between_steps       = false;
     advance_points(*problem, result, increments, scene.time, points);
+    if (surfaces)
+      problem->contact->advance(result.increment, *surfaces);
     policy->advance(grid, result, time, end);
     rigid.move(time, end);
     if (is_off_grid() && off_grid.n_steps++ == 0)
@@ -396,6 +407,8 @@ namespace impm
     else if (!grid.is_moved())
       {
         points.sort();
+        if (surfaces)
+          surfaces->sort();
         resample();
       }
     is_between_steps = true;

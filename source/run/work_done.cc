@@ -40,6 +40,12 @@ namespace impm
         sum[1] += u.local_element(i);
         sum[2] += 1;
       }
+    if (problem.contact)
+      {
+        work += problem.contact->work_of_obstacles();
+        step.contact =
+          Utilities::MPI::sum(problem.contact->energy_gain(), comm);
+      }
     Utilities::MPI::sum(sums, comm, sums);
     step.external = Utilities::MPI::sum(work, comm);
     for (unsigned int b = 0; b < n; ++b)
@@ -69,6 +75,7 @@ namespace impm
     internal += step.internal;
     stabilization += step.stabilization;
     uncertain += step.uncertain;
+    contact += step.contact;
     last_forces = step.last_forces;
   }
 

@@ -39,6 +39,21 @@ namespace impm
           "their impacts with 'Grid/Reset = every step'");
     }
 
+    /** What does not go with surfaces that meet. */
+    template <int dim>
+    void
+    check_contact(const Section &top, const Scene<dim> &scene)
+    {
+      if (scene.contact.pairs.empty())
+        return;
+      if (scene.time.is_explicit())
+        top.subsection("Contact").refuse("Pairs",
+                                         "allowed with explicit steps is none");
+      if (scene.time.momentum_formulation)
+        top.subsection("Contact").refuse(
+          "Pairs", "allowed in the momentum formulation is none");
+    }
+
     /** Which faces hold by touch: that come to material, or to which it comes
      * without inertia. Not those that draw material away from themselves, nor
      * walls from which it has to part again: what touches is glued. Points that
@@ -80,10 +95,17 @@ namespace impm
       add_adaptation(top, scene.adaptation, scene.grid, scene.bodies);
       scene.grid.finest_level = scene.adaptation.highest;
       add_boundary_conditions(top, scene.faces, scene.grid, scene.warnings);
+      add_contact(top,
+                  scene.contact,
+                  scene.bodies,
+                  scene.faces,
+                  scene.grid,
+                  scene.warnings);
       add_loads(top, scene.loads, scene.bodies, lagrangian);
       add_time(top, scene.time, lagrangian, scene.warnings);
       choose_touch(scene);
       check_reset(top, scene);
+      check_contact(top, scene);
       add_solver(top, scene.solver, scene.time, scene.bodies);
       add_stabilization(top, scene.stabilization, scene.time, lagrangian);
       add_output(top, scene.output, scene.faces, scene.bodies);

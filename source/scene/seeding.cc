@@ -76,8 +76,8 @@ namespace impm
       for_others(bodies, body, [&](const unsigned int b) {
         const auto &other = bodies[b];
         shared[b] += other.shape->contains(
-          other.surface == SurfacePoints::whole_cells ? seed.cell->center() :
-                                                        seed.position);
+          other.surface == SurfaceSeeding::whole_cells ? seed.cell->center() :
+                                                         seed.position);
       });
     }
 
@@ -113,7 +113,7 @@ namespace impm
           [&](const Point<dim> &place) {
             return contains(place) && bodies[b].shape->contains(place);
           };
-        shared[b] += bodies[b].surface == SurfacePoints::whole_cells ?
+        shared[b] += bodies[b].surface == SurfaceSeeding::whole_cells ?
                        bodies[b].shape->contains(seed.cell->center()) :
                        find_part(in_both, box).share > 0;
       });
@@ -185,14 +185,14 @@ namespace impm
                   }
                 const BoundingBox<dim> box({seed.position - 0.5 * seed.domain,
                                             seed.position + 0.5 * seed.domain});
-                if (body.surface == SurfacePoints::cut_boxes &&
+                if (body.surface == SurfaceSeeding::cut_boxes &&
                     is_cut(box, *body.shape))
                   {
                     if (!cut_to_shape(bodies, body, box, seed, shared))
                       continue;
                   }
                 else if (body.shape->contains(body.surface ==
-                                                  SurfacePoints::whole_cells ?
+                                                  SurfaceSeeding::whole_cells ?
                                                 cell->center() :
                                                 seed.position))
                   count_shared(bodies, body, seed, shared);

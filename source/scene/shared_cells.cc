@@ -22,7 +22,8 @@ namespace impm
             first      = p;
             is_counted = false;
           }
-        if (!is_counted && &points.material(p) != &points.material(first))
+        if (!is_counted && &points.material(p) != &points.material(first) &&
+            points.layer(p) == points.layer(first))
           {
             is_counted = true;
             ++n_shared;

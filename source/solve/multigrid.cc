@@ -22,9 +22,9 @@ namespace impm
     using Place  = NodeLattice::Place;
     using Key    = CoarseUnknowns::Key;
 
-    // A key is made of three coordinates and a component.
-    constexpr unsigned int n_bits = 20;
-    constexpr Key          end    = Key(1) << n_bits;
+    // A key is made of three coordinates and, last, of layer and component.
+    constexpr unsigned int n_bits = 18, n_last_bits = 64 - 3 * n_bits;
+    constexpr Key end = Key(1) << n_bits, last_end = Key(1) << n_last_bits;
 
     Key
     key_of(const Place &place, const unsigned int component)
@@ -32,14 +32,14 @@ namespace impm
       Key key = 0;
       for (const int x : {place[2], place[1], place[0]})
         key = key << n_bits | Key(x);
-      return key << 2 | component;
+      return key << n_last_bits | component;
     }
 
     Place
     place_of(Key key)
     {
       Place place;
-      key >>= 2;
+      key >>= n_last_bits;
       for (int &x : place)
         {
           x = key & (end - 1);
@@ -153,14 +153,23 @@ namespace impm
       if (Key(Utilities::MPI::max(largest, communicator)) >= end / 2)
         throw ComputationError("the grid has too many cells along an axis for "
                                "'Preconditioner = multigrid'; take AMG");
+      unsigned int n_layers = 1;
+      for (const unsigned int layer : lattice.layers)
+        n_layers = std::max(n_layers, layer + 1);
+      if (dim * Utilities::MPI::max(n_layers, communicator) > last_end)
+        throw ComputationError("too many bodies move nodes of their own for "
+                               "'Preconditioner = multigrid'; take AMG");
       for (const auto &value : lattice.prescribed)
-        prescribed.push_back(key_of(value.place, value.component));
+        prescribed.push_back(
+          key_of(value.place, dim * value.layer + value.component));
 
       LevelUnknowns unknowns;
       unknowns.owned = matrix.unknowns.partitioner->locally_owned_range();
       for (unsigned int i = 0; i < matrix.unknowns.n_owned(); ++i)
         {
-          unknowns.keys.push_back(key_of(lattice.places[i / dim], i % dim));
+          unknowns.keys.push_back(
+            key_of(lattice.places[i / dim],
+                   dim * lattice.layers[i / dim] + i % dim));
           unknowns.extents.push_back(lattice.extents[i / dim]);
           unknowns.held.push_back(matrix.unknowns.is_held(i));
         }
@@ -206,7 +215,10 @@ namespace impm
                   place[d] += upper ? extent - rest : -rest;
                 }
               if (weight > 0)
-                visit(i, key_of(place, fine.keys[i] & 3), weight, extent);
+                visit(i,
+                      key_of(place, fine.keys[i] & (last_end - 1)),
+                      weight,
+                      extent);
             }
     }
 

@@ -6,6 +6,24 @@
 
 namespace impm
 {
+  void
+  NewtonSolver::Result::append(const Result &more)
+  {
+    converged        = more.converged;
+    stopped_at_noise = more.stopped_at_noise;
+    iterations += more.iterations;
+    linear_iterations += more.linear_iterations;
+    line_searches += more.line_searches;
+    projections += more.projections;
+    residuals.insert(residuals.end(),
+                     more.residuals.begin(),
+                     more.residuals.end());
+    step_lengths.insert(step_lengths.end(),
+                        more.step_lengths.begin(),
+                        more.step_lengths.end());
+    failure = more.failure;
+  }
+
   NewtonSolver::NewtonSolver(const SolverSpec    &spec,
                              NonlinearSystem     &system,
                              dealii::TimerOutput &timer)

@@ -2,6 +2,7 @@
 #define impm_balance_step_problem_h
 
 #include <impm/balance/momentum_balance.h>
+#include <impm/balance/terms/contact.h>
 #include <impm/balance/terms/ghost_penalty.h>
 #include <impm/balance/terms/internal_forces.h>
 #include <impm/balance/terms/loads.h>
@@ -52,7 +53,8 @@ namespace impm
                 WorkCounts                &counts,
                 double                     time,
                 double                     dt,
-                const StepDamping         &damping = {});
+                const SurfacePoints<dim>  *surfaces = nullptr,
+                const StepDamping         &damping  = {});
 
     StepProblem(const StepProblem &) = delete;
 
@@ -90,6 +92,14 @@ namespace impm
                0.;
     }
 
+    /** Component along `direction` of what a face or a rigid body, by its name,
+     * exerts by what it holds, in end_forces(), and by contact (N). Collective.
+     */
+    double
+    reaction(const std::string         &name,
+             const Vector              &end_forces,
+             const std::vector<double> &direction) const;
+
     /** Those of the terms that are no physics: ghost penalty, springs of pieces
      * that nothing holds and of damping. */
     std::vector<const Term *>
@@ -107,6 +117,8 @@ namespace impm
     const PopulatedCells<dim>                        populated;
     const std::unique_ptr<const ResidualNorm>        norm; ///< null if explicit
 
+    const Scene<dim> &scene;
+
   private:
     NodalMotion gathered; ///< before it is known what holds the nodes
 
@@ -123,6 +135,7 @@ namespace impm
     const std::unique_ptr<InternalForces<dim>> internal_forces;
     const std::unique_ptr<GhostPenalty<dim>>   ghost_penalty;
     const std::unique_ptr<Loads<dim>>          loads;
+    const std::unique_ptr<Contact<dim>>        contact;
 
     const Vector start_forces; ///< f(0) (N), if asked for, or empty
     /** What the integrator takes for the acceleration at the start: gathered,

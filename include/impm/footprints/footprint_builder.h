@@ -4,6 +4,7 @@
 #include <impm/footprints/footprints.h>
 #include <impm/grid/background_grid.h>
 #include <impm/grid/cells_at_vertices.h>
+#include <impm/grid/populated_cells.h>
 
 #include <optional>
 #include <vector>
@@ -47,6 +48,24 @@ namespace impm
     build(const MaterialPoints<dim> &points,
           const BackgroundGrid<dim> &grid,
           const Discretization<dim> &discretization);
+
+    /** A place in a cell, and the layer whose nodes it touches, if any. */
+    struct Place
+    {
+      dealii::Point<dim>                                        position;
+      typename dealii::Triangulation<dim>::active_cell_iterator cell;
+      std::optional<unsigned int>                               layer;
+    };
+
+    /**
+     * Of places that touch one cell each. Where a layer has no material in the
+     * cell of a place, the nearest around that has some is touched, beyond its
+     * faces: a surface may lie a little outside of all points.
+     */
+    Footprints<dim>
+    build_at(const std::vector<Place>  &places,
+             const PopulatedCells<dim> &populated,
+             const Discretization<dim> &discretization);
 
   private:
     using CellIterator = typename Discretization<dim>::CellIterator;

@@ -30,6 +30,7 @@ namespace impm
     struct Cell
     {
       CellIterator                      cell; ///< owned, or a ghost cell
+      unsigned int                      layer;
       std::array<unsigned int, n_nodes> nodes;
       unsigned int                      begin, end; ///< its entries
       double                            extent;     ///< smallest (m)
@@ -49,6 +50,7 @@ namespace impm
     struct Piece
     {
       unsigned int       point;
+      unsigned int       layer; ///< of its nodes
       CellIterator       cell;
       double             weight;   ///< share of the point
       dealii::Point<dim> centroid; ///< in unit coordinates of the cell
@@ -148,6 +150,12 @@ namespace impm
     move_points(const Vector                        &increment,
                 std::vector<dealii::Tensor<1, dim>> &of_points) const;
 
+    using Tensors = std::vector<dealii::Tensor<2, dim>>;
+
+    /** 1 + sum_I u_I grad S_pI of the points. */
+    Tensors
+    deformations(const Vector &u) const;
+
     /** field += sum_p S_p at_points_p; ghosts of the field are not summed. */
     void
     spread(const std::vector<dealii::Tensor<1, dim>> &at_points,
@@ -163,7 +171,7 @@ namespace impm
              bytes_of(values, gradients, moved_by, cell_of_entry);
     }
 
-    std::vector<Cell>         cells;  ///< those that points touch
+    std::vector<Cell>         cells;  ///< those that points of a layer touch
     std::vector<unsigned int> point;  ///< of every entry
     std::vector<double>       weight; ///< of every entry
     /** 1/r of every point, if axisymmetric (1/m). */
@@ -184,12 +192,6 @@ namespace impm
     unsigned int n_limited_boxes = 0;
 
   private:
-    using Tensors = std::vector<dealii::Tensor<2, dim>>;
-
-    /** 1 + sum_I u_I grad S_pI of the points. */
-    Tensors
-    deformations(const Vector &u) const;
-
     /** The node that a point gives most to, if all cells that the point touches
      * have it; else the invalid number. */
     unsigned int

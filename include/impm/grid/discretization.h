@@ -25,7 +25,11 @@ namespace impm
     return cell->vertex(0).distance(cell->vertex(1u << direction));
   }
 
-  /** Numbers of the nodes of a grid, as long as its cells stay the same. */
+  /**
+   * Numbers of the nodes of a grid, as long as its cells stay the same. Bodies
+   * that may slide along each other or part move nodes of their own: every
+   * vertex has a node for each layer of bodies, one after the other.
+   */
   template <int dim>
   struct NodeNumbering
   {
@@ -33,11 +37,14 @@ namespace impm
      * the first axis first. Collective. */
     NodeNumbering(const dealii::parallel::TriangulationBase<dim> &triangulation,
                   const std::vector<unsigned int>                &coarse_cells,
+                  unsigned int                                    n_layers,
                   unsigned int                                    epoch);
 
     /** Counts the grids: grows when cells are refined, coarsened or sent to
      * another rank. Whoever keeps something by cell compares it. */
     const unsigned int epoch;
+
+    const unsigned int n_layers; ///< of nodes
 
     const dealii::parallel::TriangulationBase<dim> &triangulation;
     dealii::DoFHandler<dim>                         dof_handler;
@@ -60,6 +67,7 @@ namespace impm
     {
       std::array<int, dim> place;  ///< from the lower corner
       int                  extent; ///< of the smallest cells around it
+      unsigned int         layer;
     };
 
     std::vector<LatticeNode> lattice; ///< of the nodes that this rank owns
@@ -90,18 +98,32 @@ namespace impm
     }
 
     /**
-     * Where the nodes of a cell stand in a Vector of this grid: component c
-     * of node n is its local element dim n + c.
+     * Where the nodes of a cell in a layer stand in a Vector of this grid:
+     * component c of node n is its local element dim n + c.
      */
     std::array<unsigned int, 1u << dim>
-    nodes_of(const CellIterator &cell) const
+    nodes_of(const CellIterator &cell, const unsigned int layer) const
     {
       std::array<unsigned int, 1u << dim> nodes;
       for (const unsigned int v : cell->vertex_indices())
         nodes[v] = numbering->partitioner->global_to_local(
-                     cell->vertex_dof_index(v, 0)) /
+                     cell->vertex_dof_index(v, dim * layer)) /
                    dim;
       return nodes;
+    }
+
+    /** The layer of a node. */
+    unsigned int
+    layer(const unsigned int node) const
+    {
+      return node % numbering->n_layers;
+    }
+
+    /** The node of the first layer that stands at the same vertex. */
+    unsigned int
+    in_first_layer(const unsigned int node) const
+    {
+      return node - layer(node);
     }
 
     /** The same cell, with unknowns. */

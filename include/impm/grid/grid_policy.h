@@ -1,6 +1,7 @@
 #ifndef impm_grid_grid_policy_h
 #define impm_grid_grid_policy_h
 
+#include <impm/contact/surface_points.h>
 #include <impm/grid/rigid_bodies.h>
 #include <impm/input/sections/boundary_conditions.h>
 
@@ -68,14 +69,15 @@ namespace impm
   };
 
   /**
-   * Refines and coarsens the cells that are flagged and takes points and rigid
-   * bodies along. A Lagrangian grid cannot change. Collective.
+   * Refines and coarsens the cells that are flagged and takes points, rigid
+   * bodies and surfaces along. A Lagrangian grid cannot change. Collective.
    */
   template <int dim>
   void
   adapt_grid(BackgroundGrid<dim> &grid,
              MaterialPoints<dim> &points,
-             RigidBodies<dim>    &rigid);
+             RigidBodies<dim>    &rigid,
+             SurfacePoints<dim>  *surfaces = nullptr);
 
   /** Sends cells to other ranks with all that lives in them. Not for a
    * Lagrangian grid. Collective. */
@@ -83,7 +85,8 @@ namespace impm
   void
   repartition_grid(BackgroundGrid<dim> &grid,
                    MaterialPoints<dim> &points,
-                   RigidBodies<dim>    &rigid);
+                   RigidBodies<dim>    &rigid,
+                   SurfacePoints<dim>  *surfaces = nullptr);
 } // namespace impm
 
 #endif

@@ -22,16 +22,17 @@ namespace impm
     struct Cell
     {
       typename Discretization<dim>::CellIterator         cell;
+      unsigned int                                       layer;
       std::array<unsigned int, Footprints<dim>::n_nodes> nodes;
     };
 
-    std::vector<Cell> cells; ///< owned ones that some point touches
+    std::vector<Cell> cells; ///< owned ones that points of a layer touch
 
     /**
-     * Smallest Young's modulus in a cell, owned or ghost, by active index; 0
-     * where there is no material (Pa).
+     * Smallest Young's modulus in a cell, owned or ghost, by layer and active
+     * index; 0 where there is no material (Pa).
      */
-    std::vector<double> stiffness;
+    std::vector<std::vector<double>> stiffness;
   };
 
   /** Fills the ghost cells of data by active cell index. Collective. */

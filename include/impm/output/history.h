@@ -31,6 +31,8 @@ namespace impm
     double internal_work      = 0; ///< of the stresses, as seen by the grid (J)
     double stabilization_work = 0; ///< of ghost penalty and holding (J)
     double uncertain_work     = 0; ///< see WorkDone (J)
+    double contact_work = 0; ///< stored in contact, or lost to friction (J)
+    double smallest_gap = 1; ///< between surfaces, over their layer
     unsigned int splits = 0, merges = 0, grid_resets = 0;
     unsigned int unstable = 0; ///< steps from an equilibrium that is not stable
     unsigned int damped   = 0; ///< steps that end in none
@@ -56,7 +58,8 @@ namespace impm
             &external_work &internal_work &stabilization_work &uncertain_work
               &splits &merges &grid_resets &unstable &damped &pieces &flow_share
                 &resampling_kinetic_energy &resampling_internal_energy
-                  &step_error &imbalance &wall_seconds;
+                  &step_error &imbalance &wall_seconds &contact_work
+                    &smallest_gap;
     }
   };
 
@@ -168,6 +171,7 @@ namespace impm
     const MaterialPoints<dim>     &points;
     const BackgroundGrid<dim>     &grid;
     PointsPerCell                  density;
+    const bool                     has_contact;
     const std::vector<std::string> names; ///< of columns
     /** By probe, which points there: the number of its point, or -1. */
     std::vector<double>                             followed;

@@ -122,6 +122,13 @@ namespace impm
       return static_cast<unsigned int>(data[point][0]);
     }
 
+    /** Of nodes that it moves. */
+    unsigned int
+    layer(const unsigned int point) const
+    {
+      return layers[body(point)];
+    }
+
     const std::string &
     name_of_body(const unsigned int point) const
     {
@@ -247,6 +254,7 @@ namespace impm
 
     std::vector<std::shared_ptr<const Material>> materials; ///< by body
     std::vector<std::string>                     names;     ///< of the bodies
+    std::vector<unsigned int>                    layers;    ///< likewise
     std::vector<double *>                        data;
     std::vector<dealii::types::particle_index>   ids;
   };

@@ -187,6 +187,11 @@ namespace impm
     void
     watch_faces();
 
+    /** Reports on surfaces that meet, and warns of such as pass into each
+     * other. Collective. */
+    void
+    watch_contact();
+
     /** What is due once a row of the history. Collective. */
     void
     write_row();
@@ -238,6 +243,7 @@ namespace impm
     const std::unique_ptr<GridPolicy<dim>> policy;
     MaterialPoints<dim>                    points;
     RigidBodies<dim>                       rigid;
+    std::unique_ptr<SurfacePoints<dim>>    surfaces; ///< if any meet others
     LoadBalance<dim>                       balance;
     double       best_imbalance = 1; ///< that could be reached the last time
     unsigned int adapted_step   = 0; ///< the last that began by it

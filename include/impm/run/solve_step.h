@@ -35,7 +35,22 @@ namespace impm
       {
         if (problem.integrator.has_inertia())
           u.equ(problem.dt, problem.motion.velocity);
-        result = NewtonSolver(spec, problem.balance, timer).solve(u);
+        const auto solve = [&]() {
+          return NewtonSolver(spec, problem.balance, timer).solve(u);
+        };
+        result = solve();
+        // Friction has an energy only where the pressure is known.
+        const unsigned int most = 50;
+        for (unsigned int i = 0; problem.contact && result.converged &&
+                                 problem.contact->renew_friction(
+                                   problem.discretization->communicator);
+             ++i)
+          {
+            if (i < most)
+              result.append(solve());
+            else
+              result.fail("friction does not settle");
+          }
       }
     problem.discretization->interpolate_hanging(u);
     return result;

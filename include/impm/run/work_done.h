@@ -25,7 +25,7 @@ namespace impm
     /** The work (J) of a step, and the forces at its end by carrier (N). */
     struct Step
     {
-      double external = 0, internal = 0, stabilization = 0;
+      double external = 0, internal = 0, stabilization = 0, contact = 0;
       /** Between the trapezoidal rule and the forces at one end (J). */
       double                              uncertain = 0;
       std::vector<dealii::Tensor<1, dim>> last_forces;
@@ -45,13 +45,15 @@ namespace impm
     void
     serialize(Archive &archive, const unsigned int /*version*/)
     {
-      archive &external &internal &stabilization &uncertain &last_forces;
+      archive &external &internal &stabilization &uncertain &contact
+        &last_forces;
     }
 
     double external      = 0; ///< (J)
     double internal      = 0; ///< (J)
     double stabilization = 0; ///< by ghost penalty and holding (J)
     double uncertain     = 0; ///< of the external work (J)
+    double contact       = 0; ///< stored in contact, or lost to friction (J)
 
   private:
     /** By carrier: the forces at the end of the last step (N). */

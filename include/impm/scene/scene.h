@@ -4,6 +4,7 @@
 #include <impm/input/sections/adaptation.h>
 #include <impm/input/sections/bodies.h>
 #include <impm/input/sections/boundary_conditions.h>
+#include <impm/input/sections/contact.h>
 #include <impm/input/sections/general.h>
 #include <impm/input/sections/geometry.h>
 #include <impm/input/sections/grid.h>
@@ -32,6 +33,7 @@ namespace impm
     Bodies<dim>                     bodies;
     AdaptationSpec<dim>             adaptation;
     Faces<dim>                      faces;
+    ContactSpec                     contact;
     LoadsSpec<dim>                  loads;
     TimeSpec                        time;
     SolverSpec                      solver;

@@ -22,9 +22,10 @@ namespace impm
   /**
    * The points of a body in the cells of this rank: those of a regular
    * pattern in every cell that lie in its shape, or what of their boxes does
-   * (see SurfacePoints), or those of its file. Throws InputError, on every rank
-   * alike, when there are none, unless it `may_be_empty`, or when one, or part
-   * of what it stands for, also lies in the shape of another body. Collective.
+   * (see SurfaceSeeding), or those of its file. Throws InputError, on every
+   * rank alike, when there are none, unless it `may_be_empty`, or when one, or
+   * part of what it stands for, also lies in the shape of another body.
+   * Collective.
    */
   template <int dim>
   std::vector<Seed<dim>>

@@ -14,14 +14,15 @@ namespace impm
   {
     using Place = std::array<int, 3>; ///< from the lower corner; 0 beyond dim
 
-    std::vector<Place> places; ///< of Unknowns::nodes
+    std::vector<Place>        places; ///< of Unknowns::nodes
+    std::vector<unsigned int> layers; ///< likewise, see NodeNumbering
     /** Extent of the smallest cells around them, by node: a power of 2. */
     std::vector<int> extents;
 
     struct Prescribed
     {
       Place        place;
-      unsigned int component;
+      unsigned int layer, component;
     };
     std::vector<Prescribed> prescribed; ///< values at nodes that this rank owns
   };

@@ -31,6 +31,17 @@ namespace impm
       /** Along which the equilibrium at the start is not stable: its largest
        * value is one; empty if it is, or none looks. */
       Vector unstable_mode;
+
+      /** When the step was solved anew, in a system that has changed. */
+      void
+      append(const Result &more);
+
+      void
+      fail(const std::string &why)
+      {
+        converged = false;
+        failure   = why;
+      }
     };
 
     NewtonSolver(const SolverSpec    &spec,

@@ -41,17 +41,20 @@ namespace impm
                                   const GeometryKind         geometry,
                                   const double               gamma)
   {
-    const auto                    &stiffness = populated_cells.stiffness;
-    std::vector<double>            at_edge(stiffness.size());
+    std::vector<std::vector<double>> at_edge(
+      populated_cells.stiffness.size(),
+      std::vector<double>(populated_cells.stiffness[0].size()));
     std::vector<CellIterator<dim>> adjacent;
-    for (const auto &[cell, nodes] : populated_cells.cells)
+    for (const auto &[cell, layer, nodes] : populated_cells.cells)
       {
         GridTools::get_active_neighbors<DoFHandler<dim>>(cell, adjacent);
         for (const auto &neighbor : adjacent)
-          if (stiffness[neighbor->active_cell_index()] == 0)
-            at_edge[cell->active_cell_index()] = 1;
+          if (populated_cells.stiffness[layer][neighbor->active_cell_index()] ==
+              0)
+            at_edge[layer][cell->active_cell_index()] = 1;
       }
-    exchange_cell_data(discretization, at_edge);
+    for (auto &of_layer : at_edge)
+      exchange_cell_data(discretization, of_layer);
 
     const FE_Q<dim>       fe(1);
     const QGauss<dim - 1> quadrature(2); // n_quadrature points
@@ -66,13 +69,15 @@ namespace impm
     for (const auto &populated : populated_cells.cells)
       for (const unsigned int f : populated.cell->face_indices())
         {
-          const auto &cell = populated.cell;
+          const auto &cell       = populated.cell;
+          const auto &stiffness  = populated_cells.stiffness[populated.layer];
+          const auto &is_at_edge = at_edge[populated.layer];
           if (cell->at_boundary(f) || !works_on<dim>(cell, f))
             continue;
           const CellIterator<dim> neighbor(cell->neighbor(f));
           const unsigned int      i = cell->active_cell_index(),
                              j      = neighbor->active_cell_index();
-          if (stiffness[j] == 0 || (at_edge[i] == 0 && at_edge[j] == 0))
+          if (stiffness[j] == 0 || (is_at_edge[i] == 0 && is_at_edge[j] == 0))
             continue;
 
           const typename Triangulation<dim>::active_cell_iterator tria_cell(
@@ -94,7 +99,8 @@ namespace impm
           // the face, which share some.
           Face                                face;
           std::array<unsigned int, max_nodes> place;
-          const auto neighbors = discretization.nodes_of(neighbor);
+          const auto                          neighbors =
+            discretization.nodes_of(neighbor, populated.layer);
           for (unsigned int v = 0; v < max_nodes; ++v)
             {
               const unsigned int node =

@@ -11,31 +11,37 @@ namespace impm
   namespace
   {
     /**
-     * Numbers that cells of one piece share: the smallest of a cell in it,
-     * plus one; zero without material.
+     * Numbers that cells of one piece share, by layer: the smallest of a cell
+     * in it, plus one; zero without material.
      */
     template <int dim>
-    std::vector<double>
+    std::vector<std::vector<double>>
     label_pieces(const PopulatedCells<dim> &populated,
                  const Discretization<dim> &discretization)
     {
-      std::vector<double> label(populated.stiffness.size());
+      std::vector<std::vector<double>> label(populated.stiffness.size(),
+                                             std::vector<double>(
+                                               populated.stiffness[0].size()));
+      const double                     n_cells =
+        discretization.numbering->triangulation.n_global_active_cells();
       std::vector<typename Discretization<dim>::CellIterator> neighbors;
       for (const auto &cell : populated.cells)
-        label[cell.cell->active_cell_index()] =
-          1. + cell.cell->global_active_cell_index();
+        label[cell.layer][cell.cell->active_cell_index()] =
+          1. + cell.layer * n_cells + cell.cell->global_active_cell_index();
       for (bool changed = true; changed;)
         {
-          exchange_cell_data(discretization, label);
+          for (auto &of_layer : label)
+            exchange_cell_data(discretization, of_layer);
           changed = false;
           for (const auto &cell : populated.cells)
             {
-              double &own = label[cell.cell->active_cell_index()];
+              auto   &of_layer = label[cell.layer];
+              double &own      = of_layer[cell.cell->active_cell_index()];
               GridTools::get_active_neighbors<DoFHandler<dim>>(cell.cell,
                                                                neighbors);
               for (const auto &neighbor : neighbors)
                 {
-                  const double other = label[neighbor->active_cell_index()];
+                  const double other = of_layer[neighbor->active_cell_index()];
                   if (other > 0 && other < own)
                     {
                       own     = other;
@@ -65,7 +71,8 @@ namespace impm
     std::map<double, unsigned int> held;
     for (const auto &cell : populated.cells)
       {
-        unsigned int &bits = held[label[cell.cell->active_cell_index()]];
+        unsigned int &bits =
+          held[label[cell.layer][cell.cell->active_cell_index()]];
         if (points.layout.geometry == GeometryKind::axisymmetric)
           bits |= 1u;
         for (const unsigned int node : cell.nodes)
@@ -79,14 +86,15 @@ namespace impm
         held[piece] |= bits;
 
     const auto is_isolated = [&](const auto &cell) {
-      return held.at(label[cell->active_cell_index()]) != (1u << dim) - 1;
+      return held.at(label[cell.layer][cell.cell->active_cell_index()]) !=
+             (1u << dim) - 1;
     };
     for (const auto &cell : populated.cells)
-      n += is_isolated(cell.cell);
+      n += is_isolated(cell);
     n = Utilities::MPI::sum(n, discretization.communicator);
     discretization.initialize(stiffness);
     for (const auto &cell : footprints.cells)
-      if (is_isolated(cell.cell))
+      if (is_isolated(cell))
         {
           double sum = 0;
           for (unsigned int e = cell.begin; e < cell.end; ++e)

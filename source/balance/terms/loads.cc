@@ -85,7 +85,7 @@ namespace impm
                                update_values | update_quadrature_points |
                                  update_JxW_values);
       dealii::Vector<double> traction(dim);
-      for (const auto &[cell, nodes] : populated.cells)
+      for (const auto &[cell, layer, nodes] : populated.cells)
         for (const unsigned int f : cell->face_indices())
           {
             if (!cell->face(f)->at_boundary())

@@ -13,7 +13,7 @@ namespace impm
     const Choice<bool> from_file("Points from",
                                  {{"shape", false}, {"file", true}});
 
-    const unsigned int no_slip = 3;
+    const unsigned int no_slip = 3, by_surface = 4;
 
     /** What an entry names. */
     template <typename Item>
@@ -58,10 +58,10 @@ namespace impm
     void
     add_surface(const Section &section, BodySpec<dim> &body)
     {
-      std::vector<typename Choice<SurfacePoints>::Option> options = {
-        {"cut cells", SurfacePoints::cut_boxes},
-        {"points", SurfacePoints::whole_boxes},
-        {"whole cells", SurfacePoints::whole_cells}};
+      std::vector<typename Choice<SurfaceSeeding>::Option> options = {
+        {"cut cells", SurfaceSeeding::cut_boxes},
+        {"points", SurfaceSeeding::whole_boxes},
+        {"whole cells", SurfaceSeeding::whole_cells}};
       if (!is_quasi_static(section.chosen))
         std::swap(options[0], options[1]);
       section.add("Surface",
@@ -115,12 +115,17 @@ namespace impm
         section.refuse("Points from",
                        "allowed on a Lagrangian grid, where points are Gauss "
                        "points, is 'shape'");
+      if (body.meets_surfaces && is_from_file)
+        section.refuse("Points from",
+                       "allowed with 'Contact = surface' is 'shape'");
       if (section.may_be(from_file, false))
         {
           body.shape = add_name(section,
                                 "Shape",
                                 shapes,
                                 "Name of a shape of the section Geometry.");
+          if (body.meets_surfaces)
+            return;
           if (!lagrangian || !body.rigid)
             add_points_per_cell(section, body);
           else if (body.shape && !body.shape->is_box)
@@ -179,6 +184,38 @@ namespace impm
 
     template <int dim>
     void
+    add_grip(const Section       &section,
+             BodySpec<dim>       &body,
+             const GridSpec<dim> &grid)
+    {
+      section.add(
+        "Contact",
+        body.slip_normal,
+        {{"no slip", no_slip},
+         {"slip x", 0},
+         {"slip y", 1},
+         {"slip z", 2},
+         {"surface", by_surface}},
+        "Whether material at its surface is held in all directions, "
+        "or only in the normal one that is named (slip y: free "
+        "along x and z). Surface: it has no points, may reach beyond "
+        "the grid, and meets the surfaces of those bodies with which it makes "
+        "a pair in the section Contact.");
+      body.meets_surfaces = body.slip_normal == by_surface;
+      if (body.meets_surfaces && grid.is_lagrangian())
+        section.refuse("Contact",
+                       "allowed on a Lagrangian grid are no slip, slip x, slip "
+                       "y, slip z");
+      if (body.slip_normal >= no_slip)
+        body.slip_normal = dim;
+      else if (body.slip_normal >= dim)
+        section.refuse("Contact",
+                       "allowed in 2D are no slip, slip x, slip y, "
+                       "surface");
+    }
+
+    template <int dim>
+    void
     add_body(const Section          &section,
              BodySpec<dim>          &body,
              const NamedShapes<dim> &shapes,
@@ -191,6 +228,8 @@ namespace impm
                   {{"deformable", false}, {"rigid", true}},
                   "Rigid bodies move as prescribed. Nodes of a Lagrangian "
                   "grid that reach one stick to it.");
+      if (body.rigid)
+        add_grip(section, body, grid);
       add_points(section, body, shapes, grid);
       if (!body.rigid)
         {
@@ -210,17 +249,6 @@ namespace impm
                   {dim, in_time},
                   "Since the start (m): expressions in t, one for each "
                   "direction, between semicolons.");
-      section.add(
-        "Contact",
-        body.slip_normal,
-        {{"no slip", no_slip}, {"slip x", 0}, {"slip y", 1}, {"slip z", 2}},
-        "Whether material at its surface is held in all directions, "
-        "or only in the normal one that is named (slip y: free "
-        "along x and z).");
-      if (body.slip_normal == no_slip)
-        body.slip_normal = dim;
-      else if (body.slip_normal >= dim)
-        section.refuse("Contact", "allowed in 2D are no slip, slip x, slip y");
     }
   } // namespace
 

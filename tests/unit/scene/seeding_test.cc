@@ -232,9 +232,9 @@ TEST(Seeding, QuasiStaticBodiesAreCut)
       .bodies[0]
       .surface;
   };
-  EXPECT_EQ(surface({}), SurfacePoints::cut_boxes);
-  EXPECT_EQ(surface(with_inertia), SurfacePoints::whole_boxes);
-  EXPECT_EQ(surface(with_inertia + cut), SurfacePoints::cut_boxes);
+  EXPECT_EQ(surface({}), SurfaceSeeding::cut_boxes);
+  EXPECT_EQ(surface(with_inertia), SurfaceSeeding::whole_boxes);
+  EXPECT_EQ(surface(with_inertia + cut), SurfaceSeeding::cut_boxes);
   // Gauss points of cells that fit the body
-  EXPECT_EQ(surface({"Grid/Method=Lagrangian"}), SurfacePoints::whole_boxes);
+  EXPECT_EQ(surface({"Grid/Method=Lagrangian"}), SurfaceSeeding::whole_boxes);
 }

@@ -150,7 +150,7 @@ TEST(MultigridMpi, RefusesTooFineALattice)
   System<2> system("plane strain", cells(2));
   auto      lattice = system.model.balance().lattice(*system.unknowns);
   for (auto &place : lattice.places)
-    place[1] += 1 << 19;
+    place[1] += 1 << 17;
   EXPECT_THROW(make_multigrid(*system.matrix, lattice), ComputationError);
 }
 

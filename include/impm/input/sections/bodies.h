@@ -22,7 +22,7 @@ namespace impm
   };
 
   /** What a point stands for where the surface of its shape cuts cells. */
-  enum class SurfacePoints
+  enum class SurfaceSeeding
   {
     whole_boxes, ///< its box, if the middle of that lies inside
     cut_boxes,   ///< what of its box lies inside
@@ -39,18 +39,22 @@ namespace impm
     std::shared_ptr<const Shape<dim>> shape;
     std::string                       point_file;
     std::array<unsigned int, dim>     points_per_cell; ///< by direction
-    SurfacePoints                     surface    = SurfacePoints::whole_boxes;
+    SurfaceSeeding                    surface    = SurfaceSeeding::whole_boxes;
     PointAdaptation                   adaptation = PointAdaptation::off;
     double                            points_across = 2; ///< wished, of a cell
     double                            merge_tolerance = 0;
 
-    std::shared_ptr<const Material>              material; ///< if deformable
+    std::shared_ptr<const Material> material; ///< if deformable
+    unsigned int layer = 0; ///< of nodes that it moves, if deformable
     std::shared_ptr<dealii::FunctionParser<dim>> velocity; ///< at the start
 
     /** Of a rigid body: displacement since t = 0 as a function of time. */
     std::shared_ptr<dealii::FunctionParser<1>> displacement;
     /** Direction in which alone a rigid body holds its nodes; dim: in all. */
     unsigned int slip_normal = dim;
+    /** A rigid body that has no points and holds none, but meets surfaces (see
+     * ContactSpec). */
+    bool meets_surfaces = false;
   };
 
   template <int dim>

@@ -3,6 +3,7 @@
 
 #include <impm/input/sections/grid.h>
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <string>
@@ -21,6 +22,16 @@ namespace impm
     /** Holds what touches it, rather than all that lies in its cells; see
      * grid/touching.h. */
     bool holds_by_touch = false;
+    /** Layers of nodes that it does not hold, since it meets the surfaces of
+     * their bodies. */
+    std::vector<unsigned int> released_layers;
+
+    bool
+    holds_layer(const unsigned int layer) const
+    {
+      return std::find(released_layers.begin(), released_layers.end(), layer) ==
+             released_layers.end();
+    }
     /** Prescribed displacement or velocity in (x, t); null means zero. */
     std::shared_ptr<dealii::FunctionParser<dim>> value;
     /** Force per initial area (Pa), or null. */

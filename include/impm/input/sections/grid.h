@@ -51,6 +51,8 @@ namespace impm
     /** Of the ranks, before cells are sent to others. */
     double largest_imbalance = 1.2;
 
+    unsigned int n_layers = 1; ///< of nodes, for bodies that may part
+
     /** How often a cell may be split while the grid adapts. */
     unsigned int finest_level = 0;
 

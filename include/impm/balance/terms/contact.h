@@ -1,0 +1,126 @@
+#ifndef impm_balance_terms_contact_h
+#define impm_balance_terms_contact_h
+
+#include <impm/balance/terms/term.h>
+#include <impm/contact/contact_links.h>
+
+namespace impm
+{
+  /**
+   * Contact and bonds between surfaces. The outermost layer of a body, as thick
+   * as d, a small part of a cell, is as stiff as its material is for
+   * longitudinal waves, with the modulus M of the softer side. By its energy
+   * per area,
+   *
+   *   psi = M d / 2 max(0, -g / d)^2,
+   *
+   * it presses where the gap g between surfaces is closed, and is not pressed
+   * through by any pressure less than M. A bond resists likewise in all
+   * directions, and pulls as well.
+   *
+   * Coulomb's friction resists slip like a layer of a third of that stiffness,
+   * up to the coefficient times the pressure. In a step it derives from an
+   * energy, too, since that bound is fixed while the step is solved:
+   * renew_friction() takes it from the pressures that came out, until they
+   * agree. What is beyond the bound is dissipated.
+   *
+   * Normals of obstacles are those where points come to; of other bodies, those
+   * at the start of the step.
+   */
+  template <int dim>
+  class Contact : public Term
+  {
+  public:
+    explicit Contact(ContactLinks<dim> links);
+
+    bool
+    evaluate(const Vector &u, bool with_tangent) override;
+
+    void
+    add_force(const Vector &u, Vector &force) const override;
+
+    void
+    add_start_force(Vector &force) const override;
+
+    double
+    energy(const Vector &u, const Vector &felt) const override;
+
+    std::vector<double>
+    squares_of_parts(const Vector &u, const ResidualNorm &norm) const override;
+
+    void
+    apply(const Vector &direction, Vector &image) const override;
+
+    void
+    add_matrix(bool only_pattern, const TakeBlock &take) const override;
+
+    void
+    project_tangent() override;
+
+    /** Takes the bounds of friction from the pressures of the state; returns
+     * whether they have changed so much that the step is to be solved anew.
+     * Collective. */
+    bool
+    renew_friction(MPI_Comm communicator);
+
+    /** What the layers store and friction has taken in the step (J), of this
+     * rank. */
+    double
+    energy_gain() const;
+
+    /** Force (N) on what a pair of the scene has for a partner, in the state,
+     * of this rank. */
+    dealii::Tensor<1, dim>
+    force_on_partner(unsigned int pair) const;
+
+    /** The work (J) of obstacles on the bodies in the step, taking forces for
+     * the mean of those at both ends. Of this rank. */
+    double
+    work_of_obstacles() const;
+
+    /** Moves points with their surfaces, which keep what they have met. They
+     * are to be sorted next. */
+    void
+    advance(const Vector &increment, SurfacePoints<dim> &points) const;
+
+    /** Smallest gap over its layer, of this rank: below 0 where surfaces touch,
+     * -1 where a layer is pressed through. */
+    double
+    smallest_gap() const;
+
+    const ContactLinks<dim> all;
+
+  private:
+    /** Of a link, at an increment. */
+    struct State
+    {
+      double                 energy = 0; ///< per area (J/m^2)
+      dealii::Tensor<1, dim> gradient;   ///< on the partner (Pa)
+      /** Derivative of the gradient but for the curvature of obstacles, and
+       * what that adds (Pa/m). */
+      dealii::SymmetricTensor<2, dim> tangent, curved;
+      double                          pressure = 0; ///< (Pa)
+      double                          gap      = 0; ///< (m)
+      /** Of the layer, before what is beyond the bound has slipped (m). */
+      dealii::Tensor<1, dim> slip;
+    };
+
+    State
+    state_at(unsigned int link, const dealii::Tensor<1, dim> &way) const;
+
+    /** Adds a gradient at the nodes of a link. */
+    void
+    add(unsigned int                  link,
+        const dealii::Tensor<1, dim> &gradient,
+        Vector                       &force) const;
+
+    /** sum_k c_k u_k (m). */
+    dealii::Tensor<1, dim>
+    way_of(const ContactLink<dim> &link, const Vector &u) const;
+
+    std::vector<State>  states;
+    std::vector<double> bounds; ///< of friction (Pa)
+  };
+} // namespace impm
+
+#endif

@@ -1,0 +1,141 @@
+#ifndef impm_contact_surface_points_h
+#define impm_contact_surface_points_h
+
+#include <impm/input/sections/contact.h>
+#include <impm/points/material_points.h>
+
+#include <vector>
+
+namespace impm
+{
+  /**
+   * The surfaces of bodies that meet others there: points without mass, each of
+   * which stands for a piece of a surface. They go with the nodes of their body
+   * and carry what outlives a step.
+   */
+  template <int dim>
+  class SurfacePoints
+  {
+  public:
+    /** Covers the surfaces of the shapes, a piece for each part of a cell that
+     * a material point stands for. Collective. */
+    SurfacePoints(const ContactSpec         &contact,
+                  const Bodies<dim>         &bodies,
+                  GeometryKind               geometry,
+                  const BackgroundGrid<dim> &grid);
+
+    /** Sorts the points into cells, takes their addresses, and lets ranks know
+     * those near their cells. Those that
+     * round-off has carried through a face of the domain are put back.
+     * Collective. */
+    void
+    sort();
+
+    /** Of this rank. */
+    unsigned int
+    size() const
+    {
+      return data.size();
+    }
+
+    /** See offset_area. */
+    const double *
+    fields(const unsigned int point) const
+    {
+      return data[point];
+    }
+
+    /** Number of its body in the scene. */
+    unsigned int
+    body(const unsigned int point) const
+    {
+      return static_cast<unsigned int>(data[point][0]);
+    }
+
+    /** Outward normal times area (m^2; of the whole ring in axisymmetry, per
+     * metre of thickness in the plane). */
+    dealii::Tensor<1, dim>
+    area(const unsigned int point) const
+    {
+      return vector(point, offset_area);
+    }
+
+    /** Of friction, before it gives way, or of a bond: how far the other
+     * surface has been left behind (m). */
+    dealii::Tensor<1, dim>
+    slip(const unsigned int point) const
+    {
+      return vector(point, offset_slip);
+    }
+
+    /** On the surface, at the end of the last step (Pa). */
+    double
+    pressure(const unsigned int point) const
+    {
+      return data[point][offset_pressure];
+    }
+
+    /** Number of the pair whose partner it met in the last step, or -1. */
+    int
+    pair(const unsigned int point) const
+    {
+      return static_cast<int>(data[point][1]);
+    }
+
+    /** What a point has met. */
+    struct Meeting
+    {
+      int                    pair = -1;
+      dealii::Tensor<1, dim> slip;
+      double                 pressure = 0;
+    };
+
+    void
+    set_meeting(const unsigned int point, const Meeting &meeting)
+    {
+      data[point][1] = meeting.pair;
+      set_vector(point, offset_slip, meeting.slip);
+      data[point][offset_pressure] = meeting.pressure;
+    }
+
+    void
+    set_area(const unsigned int point, const dealii::Tensor<1, dim> &area)
+    {
+      set_vector(point, offset_area, area);
+    }
+
+    SortedParticles<dim> sorted;
+    const GeometryKind   geometry;
+    const bool           sees_others; ///< surfaces of other bodies
+    const MPI_Comm       communicator;
+
+    // Within the fields of a point: body, pair, and these.
+    static constexpr unsigned int offset_area     = 2;
+    static constexpr unsigned int offset_slip     = offset_area + dim;
+    static constexpr unsigned int offset_pressure = offset_slip + dim;
+    static constexpr unsigned int n_fields        = offset_pressure + 1;
+
+  private:
+    const BackgroundGrid<dim> &grid;
+
+    dealii::Tensor<1, dim>
+    vector(const unsigned int point, const unsigned int offset) const
+    {
+      dealii::Tensor<1, dim> result;
+      std::copy_n(data[point] + offset, dim, result.begin_raw());
+      return result;
+    }
+
+    void
+    set_vector(const unsigned int            point,
+               const unsigned int            offset,
+               const dealii::Tensor<1, dim> &vector)
+    {
+      std::copy_n(vector.begin_raw(), dim, data[point] + offset);
+    }
+
+    std::vector<double *> data;
+  };
+} // namespace impm
+
+#endif

@@ -1,0 +1,337 @@
+#include <impm/balance/terms/contact.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace impm
+{
+  using namespace dealii;
+
+  namespace
+  {
+    constexpr double friction_stiffness = 1. / 3; ///< over that of the layer
+
+    /** Bounds of friction agree when they differ by no more, in the mean. */
+    constexpr double tolerance = 1e-3;
+  } // namespace
+
+  template <int dim>
+  typename Contact<dim>::State
+  Contact<dim>::state_at(const unsigned int l, const Tensor<1, dim> &way) const
+  {
+    const auto  &link = all.links[l];
+    const double k    = link.stiffness;
+    State        state;
+    state.slip = link.slip + way;
+    if (link.is_bond)
+      {
+        state.energy   = 0.5 * k * state.slip.norm_square();
+        state.gradient = k * state.slip;
+        state.tangent  = k * unit_symmetric_tensor<dim>();
+        state.pressure = -state.gradient * link.normal;
+        return state;
+      }
+    state.gap                 = link.gap + link.normal * way;
+    Tensor<1, dim>          n = link.normal;
+    SymmetricTensor<2, dim> curvature;
+    if (link.obstacle != nullptr)
+      {
+        const auto proximity = link.obstacle->proximity(link.place + way);
+        state.gap            = proximity.distance;
+        n                    = proximity.normal;
+        curvature            = proximity.curvature;
+      }
+    if (const double closed = -state.gap; closed > 0)
+      {
+        state.pressure = k * closed;
+        state.energy   = 0.5 * k * closed * closed;
+        state.gradient = -state.pressure * n;
+        state.tangent  = k * symmetrize(outer_product(n, n));
+        state.curved   = -state.pressure * curvature;
+      }
+
+    state.slip -= (state.slip * link.normal) * link.normal;
+    if (const double bound = bounds[l]; bound > 0)
+      {
+        const double c = friction_stiffness * k, slip = state.slip.norm();
+        const auto   along = unit_symmetric_tensor<dim>() -
+                           symmetrize(outer_product(link.normal, link.normal));
+        if (c * slip <= bound)
+          {
+            state.energy += 0.5 * c * slip * slip;
+            state.gradient += c * state.slip;
+            state.tangent += c * along;
+          }
+        else
+          {
+            const auto direction = state.slip / slip;
+            state.energy += bound * (slip - 0.5 * bound / c);
+            state.gradient += bound * direction;
+            state.tangent +=
+              bound / slip *
+              (along - symmetrize(outer_product(direction, direction)));
+          }
+      }
+    return state;
+  }
+
+  template <int dim>
+  Tensor<1, dim>
+  Contact<dim>::way_of(const ContactLink<dim> &link, const Vector &u) const
+  {
+    Tensor<1, dim> way;
+    for (unsigned int k = link.begin; k < link.end; ++k)
+      for (unsigned int c = 0; c < dim; ++c)
+        way[c] += all.coefficients[k] * u.local_element(dim * all.nodes[k] + c);
+    if (link.obstacle != nullptr)
+      way -= link.obstacle->displacement;
+    return way;
+  }
+
+  template <int dim>
+  Contact<dim>::Contact(ContactLinks<dim> links)
+    : all(std::move(links))
+    , states(all.links.size())
+  {
+    for (const auto &link : all.links)
+      bounds.push_back(link.friction_bound);
+  }
+
+  template <int dim>
+  bool
+  Contact<dim>::evaluate(const Vector &u, const bool /*with_tangent*/)
+  {
+    for (unsigned int l = 0; l < states.size(); ++l)
+      states[l] = state_at(l, way_of(all.links[l], u));
+    return true;
+  }
+
+  template <int dim>
+  void
+  Contact<dim>::add(const unsigned int    l,
+                    const Tensor<1, dim> &gradient,
+                    Vector               &force) const
+  {
+    const auto &link = all.links[l];
+    for (unsigned int k = link.begin; k < link.end; ++k)
+      for (unsigned int c = 0; c < dim; ++c)
+        force.local_element(dim * all.nodes[k] + c) +=
+          link.area * all.coefficients[k] * gradient[c];
+  }
+
+  template <int dim>
+  void
+  Contact<dim>::add_force(const Vector & /*u*/, Vector &force) const
+  {
+    for (unsigned int l = 0; l < states.size(); ++l)
+      add(l, states[l].gradient, force);
+  }
+
+  template <int dim>
+  void
+  Contact<dim>::add_start_force(Vector &force) const
+  {
+    for (unsigned int l = 0; l < states.size(); ++l)
+      add(l, state_at(l, Tensor<1, dim>()).gradient, force);
+  }
+
+  template <int dim>
+  double
+  Contact<dim>::energy(const Vector & /*u*/, const Vector & /*felt*/) const
+  {
+    double sum = 0;
+    for (unsigned int l = 0; l < states.size(); ++l)
+      sum += all.links[l].area * states[l].energy;
+    return sum;
+  }
+
+  template <int dim>
+  std::vector<double>
+  Contact<dim>::squares_of_parts(const Vector       &u,
+                                 const ResidualNorm &norm) const
+  {
+    // A gap is a difference of places.
+    Vector parts;
+    parts.reinit(u);
+    for (unsigned int l = 0; l < states.size(); ++l)
+      {
+        const auto  &link = all.links[l];
+        const double part =
+          link.stiffness * (link.obstacle != nullptr ?
+                              link.place.norm() :
+                              link.gap + states[l].slip.norm());
+        for (unsigned int k = link.begin; k < link.end; ++k)
+          for (unsigned int c = 0; c < dim; ++c)
+            parts.local_element(dim * all.nodes[k] + c) +=
+              link.area * std::abs(all.coefficients[k]) * part;
+      }
+    parts.compress(VectorOperation::add);
+    return norm.squares(parts);
+  }
+
+  template <int dim>
+  void
+  Contact<dim>::apply(const Vector &direction, Vector &image) const
+  {
+    for (unsigned int l = 0; l < states.size(); ++l)
+      {
+        const auto    &link = all.links[l];
+        Tensor<1, dim> way;
+        for (unsigned int k = link.begin; k < link.end; ++k)
+          for (unsigned int c = 0; c < dim; ++c)
+            way[c] += all.coefficients[k] *
+                      direction.local_element(dim * all.nodes[k] + c);
+        add(l, (states[l].tangent + states[l].curved) * way, image);
+      }
+  }
+
+  template <int dim>
+  void
+  Contact<dim>::add_matrix(const bool only_pattern, const TakeBlock &take) const
+  {
+    FullMatrix<double> block;
+    for (unsigned int l = 0; l < states.size(); ++l)
+      {
+        const auto        &link = all.links[l];
+        const unsigned int n    = link.end - link.begin;
+        if (!only_pattern)
+          {
+            const auto tangent =
+              link.area * (states[l].tangent + states[l].curved);
+            block.reinit(dim * n, dim * n);
+            for (unsigned int a = 0; a < n; ++a)
+              for (unsigned int b = 0; b < n; ++b)
+                for (unsigned int c = 0; c < dim; ++c)
+                  for (unsigned int d = 0; d < dim; ++d)
+                    block(dim * a + c, dim * b + d) =
+                      all.coefficients[link.begin + a] *
+                      all.coefficients[link.begin + b] * tangent[c][d];
+          }
+        take(make_array_view(all.nodes.begin() + link.begin,
+                             all.nodes.begin() + link.end),
+             block);
+      }
+  }
+
+  template <int dim>
+  void
+  Contact<dim>::project_tangent()
+  {
+    for (auto &state : states)
+      state.curved = 0;
+  }
+
+  template <int dim>
+  bool
+  Contact<dim>::renew_friction(const MPI_Comm communicator)
+  {
+    double sums[] = {0, 0}; // of changes, of all
+    for (unsigned int l = 0; l < states.size(); ++l)
+      {
+        const auto  &link = all.links[l];
+        const double bound =
+          link.is_bond ? 0. : link.friction * states[l].pressure;
+        sums[0] += link.area * std::abs(bound - bounds[l]);
+        sums[1] += link.area * bound;
+        bounds[l] = bound;
+      }
+    Utilities::MPI::sum(sums, communicator, sums);
+    return sums[0] > tolerance * sums[1];
+  }
+
+  template <int dim>
+  double
+  Contact<dim>::energy_gain() const
+  {
+    double sum = 0;
+    for (unsigned int l = 0; l < states.size(); ++l)
+      sum += all.links[l].area *
+             (states[l].energy - state_at(l, Tensor<1, dim>()).energy);
+    return sum;
+  }
+
+  template <int dim>
+  Tensor<1, dim>
+  Contact<dim>::force_on_partner(const unsigned int pair) const
+  {
+    Tensor<1, dim> force;
+    for (unsigned int l = 0; l < states.size(); ++l)
+      if (all.links[l].pair == pair)
+        force += all.links[l].area * states[l].gradient;
+    return force;
+  }
+
+  template <int dim>
+  double
+  Contact<dim>::work_of_obstacles() const
+  {
+    double work = 0;
+    for (unsigned int l = 0; l < states.size(); ++l)
+      if (const auto &link = all.links[l]; link.obstacle != nullptr)
+        work -= 0.5 * link.area *
+                (states[l].gradient + state_at(l, Tensor<1, dim>()).gradient) *
+                link.obstacle->displacement;
+    return work;
+  }
+
+  template <int dim>
+  double
+  Contact<dim>::smallest_gap() const
+  {
+    double smallest = std::numeric_limits<double>::max();
+    for (unsigned int l = 0; l < states.size(); ++l)
+      if (const auto &link = all.links[l]; !link.is_bond)
+        smallest = std::min(smallest, states[l].gap / link.thickness);
+    return smallest;
+  }
+
+  template <int dim>
+  void
+  Contact<dim>::advance(const Vector       &increment,
+                        SurfacePoints<dim> &points) const
+  {
+    // A point that meets several goes on with the one that presses most.
+    std::vector<typename SurfacePoints<dim>::Meeting> meetings(points.size());
+    for (unsigned int l = 0; l < states.size(); ++l)
+      {
+        const auto &link    = all.links[l];
+        const auto &state   = states[l];
+        auto       &meeting = meetings[link.point];
+        if (!link.is_bond &&
+            (state.pressure == 0 || state.pressure < meeting.pressure))
+          continue;
+        meeting.pair     = link.pair;
+        meeting.pressure = state.pressure;
+        meeting.slip     = state.slip;
+        if (link.is_bond)
+          continue;
+        const double most = link.friction * state.pressure /
+                            (friction_stiffness * link.stiffness);
+        if (const double slip = state.slip.norm(); slip > most)
+          meeting.slip *= most / slip;
+      }
+    std::vector<Tensor<1, dim>> ways;
+    all.prints.interpolate(increment, ways);
+    const auto   deformations = all.prints.deformations(increment);
+    unsigned int s            = 0;
+    for (auto &particle : points.sorted.particles)
+      {
+        const auto   x    = particle.get_location();
+        const double hoop = points.geometry == GeometryKind::axisymmetric ?
+                              1 + ways[s][0] / x[0] :
+                              1.;
+        // Nanson's formula
+        points.set_area(s,
+                        hoop * determinant(deformations[s]) *
+                          (transpose(invert(deformations[s])) *
+                           points.area(s)));
+        points.set_meeting(s, meetings[s]);
+        particle.set_location(x + ways[s]);
+        ++s;
+      }
+  }
+
+  template class Contact<2>;
+  template class Contact<3>;
+} // namespace impm

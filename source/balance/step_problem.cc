@@ -1,4 +1,5 @@
 #include <impm/balance/step_problem.h>
+#include <impm/balance/terms/contact.h>
 #include <impm/balance/terms/isolated_cells.h>
 #include <impm/base/exceptions.h>
 
@@ -175,6 +176,9 @@ namespace impm
     if (!integrator.is_explicit())
       footprints.make_patches(response.average.groups);
   }
+
+  template <int dim>
+  StepProblem<dim>::~StepProblem() = default;
 
   template <int dim>
   Vector

@@ -49,6 +49,37 @@ namespace impm
       return obstacle;
     }
 
+    /** Of this rank, then of others where their cells touch those of this one.
+     */
+    template <int dim>
+    std::vector<SurfacePatch<dim>>
+    patches_of(const SurfacePoints<dim> &points)
+    {
+      std::vector<SurfacePatch<dim>> patches;
+      if (!points.sees_others)
+        return patches;
+      const auto add = [&](const auto &particle) {
+        const double  *fields = particle.get_properties().data();
+        const auto     x      = particle.get_location();
+        Tensor<1, dim> area;
+        std::copy_n(fields + points.offset_area, dim, area.begin_raw());
+        const double around = points.geometry == GeometryKind::axisymmetric ?
+                                2 * numbers::PI * x[0] :
+                                1.;
+        patches.push_back({x,
+                           area / area.norm(),
+                           std::pow(area.norm() / around, 1. / (dim - 1)),
+                           static_cast<unsigned int>(fields[0])});
+      };
+      for (const auto &particle : points.sorted.particles)
+        add(particle);
+      for (auto particle = points.sorted.particles.begin_ghost();
+           particle != points.sorted.particles.end_ghost();
+           ++particle)
+        add(*particle);
+      return patches;
+    }
+
     double
     modulus(const Material &material)
     {
@@ -57,48 +88,23 @@ namespace impm
   } // namespace
 
   template <int dim>
-  std::vector<typename ContactLinks<dim>::Touched>
-  ContactLinks<dim>::touched_by(const Footprints<dim> &prints)
-  {
-    std::vector<Touched> result(prints.first.size() - 1);
-    for (const auto &cell : prints.cells)
-      for (unsigned int e = cell.begin; e < cell.end; ++e)
-        result[prints.point[e]] = {cell.nodes, prints.value(e), cell.extent};
-    return result;
-  }
-
-  template <int dim>
   void
-  ContactLinks<dim>::append(const Touched &touched, const double factor)
+  ContactLinks<dim>::append(const Footprints<dim> &of_places,
+                            const unsigned int     place,
+                            const double           factor)
   {
-    for (unsigned int v = 0; v < touched.nodes.size(); ++v)
+    for (unsigned int k = of_places.first[place];
+         k < of_places.first[place + 1];
+         ++k)
       {
-        nodes.push_back(touched.nodes[v]);
-        coefficients.push_back(factor * touched.values[v]);
-      }
-  }
-
-  template <int dim>
-  void
-  ContactLinks<dim>::join(const unsigned int begin)
-  {
-    unsigned int end = begin;
-    for (unsigned int k = begin; k < nodes.size(); ++k)
-      {
-        const auto found =
-          std::find(nodes.begin() + begin, nodes.begin() + end, nodes[k]) -
-          nodes.begin();
-        if (found == end)
+        const unsigned int e      = of_places.entries[k];
+        const double      *values = of_places.value(e);
+        for (unsigned int v = 0; v < Footprints<dim>::n_nodes; ++v)
           {
-            nodes[end]        = nodes[k];
-            coefficients[end] = coefficients[k];
-            ++end;
+            nodes.push_back(of_places.nodes_of_entry(e)[v]);
+            coefficients.push_back(factor * values[v]);
           }
-        else
-          coefficients[found] += coefficients[k];
       }
-    nodes.resize(end);
-    coefficients.resize(end);
   }
 
   template <int dim>
@@ -115,138 +121,97 @@ namespace impm
     const auto &pairs = scene.contact.pairs;
     for (const auto &pair : pairs)
       obstacles.push_back(make_obstacle(pair, scene, grid, rigid, time, dt));
+    const FacedSurface<dim> faced(patches_of(points));
 
-    // Of this rank, then of others where their cells touch those of this one.
     using Place = typename FootprintBuilder<dim>::Place;
-    std::vector<Place>             own, other;
-    std::vector<SurfacePatch<dim>> patches;
-    const auto                     add =
-      [&](const auto &particle, const double *fields, const unsigned int body) {
-        own.push_back({particle.get_location(),
-                       particle.get_surrounding_cell(),
-                       scene.bodies[body].layer});
-        Tensor<1, dim> area;
-        std::copy_n(fields + points.offset_area, dim, area.begin_raw());
-        const double size =
-          points.geometry == GeometryKind::axisymmetric ?
-            area.norm() / (2 * numbers::PI * particle.get_location()[0]) :
-            area.norm();
-        patches.push_back({particle.get_location(),
-                           area / area.norm(),
-                           std::pow(size, 1. / (dim - 1)),
-                           body});
-      };
-    unsigned int p = 0;
+    std::vector<Place> own, others;
+    unsigned int       s = 0;
     for (const auto &particle : points.sorted.particles)
       {
-        add(particle, points.fields(p), points.body(p));
-        other.push_back(own.back());
-        other.back().layer.reset();
-        if (const int q = points.pair(p);
-            q >= 0 && pairs[q].kind == ContactKind::bonded)
-          other.back().layer = scene.bodies[pairs[q].partner].layer;
-        ++p;
-      }
-    const unsigned int n_own = own.size();
-    if (std::any_of(pairs.begin(), pairs.end(), [](const auto &pair) {
-          return pair.partner_kind == PartnerKind::deformable &&
-                 pair.kind != ContactKind::bonded;
-        }))
-      for (auto particle = points.sorted.particles.begin_ghost();
-           particle != points.sorted.particles.end_ghost();
-           ++particle)
-        add(*particle,
-            particle->get_properties().data(),
-            static_cast<unsigned int>(particle->get_properties()[0]));
-    const auto all   = builder.build_at(own, populated, discretization);
-    const auto bonds = builder.build_at(other, populated, discretization);
-    own.resize(n_own);
-    prints = builder.build_at(own, populated, discretization);
-    const auto              here = touched_by(all), there = touched_by(bonds);
-    const FacedSurface<dim> faced(patches);
-
-    unsigned int s = 0;
-    for (const auto &particle : points.sorted.particles)
-      {
-        const Point<dim> x    = particle.get_location();
-        const auto       area = points.area(s);
+        const unsigned int body = points.body(s);
+        const auto         x    = particle.get_location();
+        const auto         cell = particle.get_surrounding_cell();
+        own.push_back({x, cell, scene.bodies[body].layer});
+        double extent = cell_extent(cell, 0);
+        for (unsigned int d = 1; d < dim; ++d)
+          extent = std::min(extent, cell_extent(cell, d));
         for (unsigned int q = 0; q < pairs.size(); ++q)
           {
-            const auto        &pair = pairs[q];
-            const unsigned int body = points.body(s);
-            const bool         is_second =
-              pair.partner_kind == PartnerKind::deformable &&
-              pair.kind != ContactKind::bonded && pair.partner == body;
-            if (pair.body != body && !is_second)
+            const auto &pair = pairs[q];
+            const bool  is_deformable =
+              pair.partner_kind == PartnerKind::deformable;
+            const bool is_bond = pair.kind == ContactKind::bonded;
+            // Two surfaces look at each other, for half of the area each.
+            const bool is_second =
+              is_deformable && !is_bond && pair.partner == body;
+            const bool met = points.pair(s) == static_cast<int>(q);
+            if ((pair.body != body && !is_second) || (is_bond && !met))
               continue;
-            ContactLink<dim> link;
-            link.point           = s;
-            link.pair            = q;
-            link.area            = area.norm();
-            link.place           = x;
-            link.is_bond         = pair.kind == ContactKind::bonded;
-            link.friction        = pair.friction;
-            link.obstacle        = nullptr;
-            const double extent  = here[s].extent;
-            double       softest = modulus(*scene.bodies[body].material);
-            link.thickness       = scene.contact.thickness * extent;
-            std::optional<typename FacedSurface<dim>::Facing> facing;
-            if (pair.partner_kind == PartnerKind::deformable)
-              softest =
-                std::min(softest,
-                         modulus(
-                           *scene.bodies[is_second ? pair.body : pair.partner]
-                              .material));
-            if (link.is_bond)
+            const unsigned int partner = is_second ? pair.body : pair.partner;
+            const auto         area    = points.area(s);
+            Place              other{x, cell, {}};
+            ContactLink<dim>   link;
+            link.point     = s;
+            link.pair      = q;
+            link.area      = area.norm();
+            link.place     = x;
+            link.is_bond   = is_bond;
+            link.friction  = pair.friction;
+            link.obstacle  = nullptr;
+            link.thickness = scene.contact.thickness * extent;
+            double softest = modulus(*scene.bodies[body].material);
+            if (is_deformable)
               {
-                if (points.pair(s) != static_cast<int>(q))
-                  continue;
+                softest =
+                  std::min(softest, modulus(*scene.bodies[partner].material));
+                other.layer = scene.bodies[partner].layer;
+              }
+            if (is_bond)
+              {
                 link.normal = -area / link.area;
                 link.gap    = 0;
               }
-            else if (pair.partner_kind == PartnerKind::deformable)
+            else if (is_deformable)
               {
-                const double reach = link.thickness + extent;
-                facing             = faced.find(x,
-                                    area / link.area,
-                                    is_second ? pair.body : pair.partner,
-                                    reach);
-                if (!facing || std::abs(facing->gap) > reach)
+                const auto facing =
+                  faced.find(x, area / link.area, partner, extent);
+                if (!facing)
                   continue;
-                link.gap    = facing->gap;
-                link.normal = facing->normal;
-                link.area /= 2; // as both surfaces look at each other
+                link.gap       = facing->gap;
+                link.normal    = facing->normal;
+                other.position = x - facing->gap * facing->normal;
+                link.area /= 2;
               }
             else
               {
                 link.obstacle        = &obstacles[q];
                 const auto proximity = link.obstacle->proximity(x);
                 if (std::abs(proximity.distance) >
-                      link.thickness + extent +
-                        link.obstacle->displacement.norm() ||
+                      extent + link.obstacle->displacement.norm() ||
                     proximity.normal * area > 0)
                   continue;
                 link.gap    = proximity.distance;
                 link.normal = proximity.normal;
               }
             link.stiffness = softest / link.thickness;
-            if (points.pair(s) == static_cast<int>(q))
+            if (met)
               {
                 link.slip           = points.slip(s);
                 link.friction_bound = pair.friction * points.pressure(s);
               }
-            link.begin = nodes.size();
-            append(here[s], 1);
-            if (link.is_bond)
-              append(there[s], -1);
-            if (facing)
-              for (const auto &[patch, weight] : facing->weights)
-                append(here[patch], -weight);
-            join(link.begin);
-            link.end = nodes.size();
             links.push_back(link);
+            others.push_back(other);
           }
         ++s;
+      }
+    prints               = builder.build_at(own, populated, discretization);
+    const auto of_others = builder.build_at(others, populated, discretization);
+    for (unsigned int l = 0; l < links.size(); ++l)
+      {
+        links[l].begin = nodes.size();
+        append(prints, links[l].point, 1);
+        append(of_others, l, -1);
+        links[l].end = nodes.size();
       }
   }
 

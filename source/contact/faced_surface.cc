@@ -84,19 +84,19 @@ namespace impm
     // The plane through what is near where it is met.
     const double   spacing = patches[first].spacing;
     Tensor<1, dim> n       = patches[first].normal;
-    Facing         result;
-    const auto     weigh = [&]() {
-      result.weights.clear();
+    std::vector<std::pair<unsigned int, double>> weights;
+    const auto                                   weigh = [&]() {
+      weights.clear();
       for (const auto i : near)
         if (patches[i].normal * n > alike)
           if (const double weight = weight_at(
                 along(places[i] - place, n).norm() / (radius * spacing));
               weight > 0)
-            result.weights.emplace_back(i, weight);
+            weights.emplace_back(i, weight);
     };
     weigh();
     Tensor<1, dim> mean;
-    for (const auto &[i, weight] : result.weights)
+    for (const auto &[i, weight] : weights)
       mean += weight * patches[i].normal;
     if (mean.norm() == 0)
       return std::nullopt;
@@ -105,7 +105,7 @@ namespace impm
     double         nearest = std::numeric_limits<double>::max(), sum = 0;
     Tensor<1, dim> middle;
     Tensor<2, dim> moment;
-    for (const auto &[i, weight] : result.weights)
+    for (const auto &[i, weight] : weights)
       {
         const auto offset = along(places[i] - place, n);
         nearest           = std::min(nearest, offset.norm());
@@ -123,24 +123,20 @@ namespace impm
       moment[d][d] += 1e-10 * spacing * spacing * sum;
     const auto b        = -invert(moment) * middle;
     bool       is_inner = true;
-    for (const auto &[i, weight] : result.weights)
+    for (const auto &[i, weight] : weights)
       is_inner = is_inner && 1 + b * along(places[i] - place, n) >= 0;
-    if (is_inner)
+    Facing result{0, n};
+    sum = 0;
+    for (const auto &[i, weight] : weights)
       {
-        sum = 0;
-        for (auto &[i, weight] : result.weights)
-          {
-            weight *= 1 + b * along(places[i] - place, n);
-            sum += weight;
-          }
+        const double share =
+          weight * (is_inner ? 1 + b * along(places[i] - place, n) : 1.);
+        sum += share;
+        result.gap += share * (n * (place - places[i]));
       }
-    result.gap = 0;
-    for (auto &[i, weight] : result.weights)
-      {
-        weight /= sum;
-        result.gap += weight * (n * (place - places[i]));
-      }
-    result.normal = n;
+    result.gap /= sum;
+    if (std::abs(result.gap) > reach)
+      return std::nullopt;
     return result;
   }
 

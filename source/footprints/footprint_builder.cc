@@ -274,27 +274,28 @@ namespace impm
           continue;
         auto        cell      = discretization.with_dofs(place_cell);
         const auto &stiffness = populated.stiffness[*layer];
-        if (stiffness[cell->active_cell_index()] == 0)
+        const auto  square_to = [&x = x](const auto &other) {
+          double square = 0;
+          for (unsigned int d = 0; d < dim; ++d)
+            {
+              const double from = other->vertex(0)[d] - x[d];
+              const double beyond =
+                std::max({0., from, -from - cell_extent(other, d)});
+              square += beyond * beyond;
+            }
+          return square;
+        };
+        if (stiffness[cell->active_cell_index()] == 0 || square_to(cell) > 0)
           {
             find_surroundings(cell, discretization, around);
             double nearest = std::numeric_limits<double>::max();
             for (const auto &other : around.cells)
               if (stiffness[other->active_cell_index()] > 0)
-                {
-                  double square = 0;
-                  for (unsigned int d = 0; d < dim; ++d)
-                    {
-                      const double from = other->vertex(0)[d] - x[d];
-                      const double beyond =
-                        std::max({0., from, -from - cell_extent(other, d)});
-                      square += beyond * beyond;
-                    }
-                  if (square < nearest)
-                    {
-                      nearest = square;
-                      cell    = discretization.with_dofs(other);
-                    }
-                }
+                if (const double square = square_to(other); square < nearest)
+                  {
+                    nearest = square;
+                    cell    = discretization.with_dofs(other);
+                  }
           }
         Point<dim> unit;
         for (unsigned int d = 0; d < dim; ++d)

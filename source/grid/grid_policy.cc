@@ -1,4 +1,5 @@
 #include <impm/base/exceptions.h>
+#include <impm/contact/surface_points.h>
 #include <impm/grid/grid_policy.h>
 #include <impm/grid/step_constraints.h>
 

@@ -1,3 +1,4 @@
+#include <impm/balance/terms/contact.h>
 #include <impm/base/exceptions.h>
 #include <impm/run/simulation.h>
 

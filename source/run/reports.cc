@@ -1,3 +1,4 @@
+#include <impm/balance/terms/contact.h>
 #include <impm/balance/terms/loads.h>
 #include <impm/footprints/pieces.h>
 #include <impm/output/summary.h>

@@ -1,5 +1,6 @@
 #include <deal.II/base/utilities.h>
 
+#include <impm/balance/terms/contact.h>
 #include <impm/base/exceptions.h>
 #include <impm/base/files.h>
 #include <impm/footprints/transfer.h>

@@ -1,3 +1,4 @@
+#include <impm/balance/terms/contact.h>
 #include <impm/run/work_done.h>
 
 #include <cmath>

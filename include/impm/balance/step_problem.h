@@ -2,7 +2,6 @@
 #define impm_balance_step_problem_h
 
 #include <impm/balance/momentum_balance.h>
-#include <impm/balance/terms/contact.h>
 #include <impm/balance/terms/ghost_penalty.h>
 #include <impm/balance/terms/internal_forces.h>
 #include <impm/balance/terms/loads.h>
@@ -28,6 +27,12 @@ namespace impm
     double        push   = 0; ///< (m)
     const Vector *mode   = nullptr;
   };
+
+  template <int dim>
+  class Contact;
+
+  template <int dim>
+  class SurfacePoints;
 
   /**
    * Everything that belongs to one step and dies with it: where the points
@@ -57,6 +62,8 @@ namespace impm
                 const StepDamping         &damping  = {});
 
     StepProblem(const StepProblem &) = delete;
+
+    ~StepProblem();
 
     /**
      * The increment of an explicit step, which the forces at its start give,

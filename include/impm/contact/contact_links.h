@@ -79,25 +79,9 @@ namespace impm
     Footprints<dim>            prints;    ///< of all points of surfaces
 
   private:
-    using Nodes = std::array<unsigned int, Footprints<dim>::n_nodes>;
-
-    /** Of points that touch one cell each. */
-    struct Touched
-    {
-      Nodes         nodes;
-      const double *values = nullptr; ///< or null of one that touches none
-      double        extent = 0;       ///< of the cell, smallest (m)
-    };
-
-    static std::vector<Touched>
-    touched_by(const Footprints<dim> &prints);
-
+    /** Adds the nodes of a place that touches one cell. */
     void
-    append(const Touched &touched, double factor);
-
-    /** Lets each node stand once among those from `begin` on. */
-    void
-    join(unsigned int begin);
+    append(const Footprints<dim> &prints, unsigned int place, double factor);
   };
 } // namespace impm
 

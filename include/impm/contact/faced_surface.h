@@ -26,8 +26,7 @@ namespace impm
   /**
    * Surfaces as planes through the middle of what is near: points of a surface
    * weighed by how near they are, and such that their middle is the place that
-   * is looked at wherever the surface goes on to all sides. What is linear in
-   * space is right then, and forces have no moment of their own.
+   * is looked at wherever the surface goes on to all sides: planes are exact.
    */
   template <int dim>
   class FacedSurface
@@ -39,8 +38,6 @@ namespace impm
     {
       double                 gap;    ///< (m), negative inside of the other
       dealii::Tensor<1, dim> normal; ///< of the other
-      /** Of patches, by number; the sum is one. */
-      std::vector<std::pair<unsigned int, double>> weights;
     };
 
     /** What of a body a place on another surface, with a normal, faces within

@@ -58,9 +58,9 @@ namespace impm
     };
 
     /**
-     * Of places that touch one cell each. Where a layer has no material in the
-     * cell of a place, the nearest around that has some is touched, beyond its
-     * faces: a surface may lie a little outside of all points.
+     * Of places that touch one cell each: that of those around the given one
+     * that is nearest, of those where the layer has material. A place may lie
+     * beyond its faces, as surfaces lie a little outside of all points.
      */
     Footprints<dim>
     build_at(const std::vector<Place>  &places,

@@ -171,6 +171,13 @@ namespace impm
              bytes_of(values, gradients, moved_by, cell_of_entry);
     }
 
+    /** Of the cell of an entry. */
+    const std::array<unsigned int, n_nodes> &
+    nodes_of_entry(const unsigned int entry) const
+    {
+      return cells[cell_of_entry[entry]].nodes;
+    }
+
     std::vector<Cell>         cells;  ///< those that points of a layer touch
     std::vector<unsigned int> point;  ///< of every entry
     std::vector<double>       weight; ///< of every entry

@@ -1,12 +1,14 @@
 #ifndef impm_grid_grid_policy_h
 #define impm_grid_grid_policy_h
 
-#include <impm/contact/surface_points.h>
 #include <impm/grid/rigid_bodies.h>
 #include <impm/input/sections/boundary_conditions.h>
 
 namespace impm
 {
+  template <int dim>
+  class SurfacePoints;
+
   /** When a policy is asked. */
   struct PolicyTime
   {

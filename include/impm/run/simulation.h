@@ -5,6 +5,7 @@
 
 #include <impm/app/command_line.h>
 #include <impm/app/console.h>
+#include <impm/contact/surface_points.h>
 #include <impm/grid/adaptive_grid.h>
 #include <impm/grid/load_balance.h>
 #include <impm/output/history.h>

@@ -1,0 +1,54 @@
+#include <impm/balance/terms/contact.h>
+#include <impm/run/solve_step.h>
+
+#include <cmath>
+
+namespace impm
+{
+  using namespace dealii;
+
+  template <int dim>
+  NewtonSolver::Result
+  solve_step(StepProblem<dim> &problem,
+             const SolverSpec &spec,
+             TimerOutput      &timer,
+             Vector           &u)
+  {
+    NewtonSolver::Result result;
+    problem.discretization->initialize(u);
+    if (problem.integrator.is_explicit())
+      {
+        problem.explicit_increment(u);
+        result.converged =
+          problem.balance.strain(u, false) && std::isfinite(u.norm_sqr());
+        if (!result.converged)
+          result.failure = "the explicit step turns a point inside out";
+      }
+    else
+      {
+        if (problem.integrator.has_inertia())
+          u.equ(problem.dt, problem.motion.velocity);
+        const auto solve = [&]() {
+          return NewtonSolver(spec, problem.balance, timer).solve(u);
+        };
+        result = solve();
+        // Friction has an energy only where the pressure is known.
+        const unsigned int most = 50;
+        for (unsigned int i = 0; problem.contact && result.converged &&
+                                 problem.contact->renew_friction(
+                                   problem.discretization->communicator);
+             ++i)
+          {
+            if (i < most)
+              result.append(solve());
+            else
+              result.fail("friction does not settle");
+          }
+      }
+    problem.discretization->interpolate_hanging(u);
+    return result;
+  }
+
+  template decltype(solve_step<2>) solve_step<2>;
+  template decltype(solve_step<3>) solve_step<3>;
+} // namespace impm

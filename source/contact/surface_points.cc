@@ -141,6 +141,17 @@ namespace impm
       data.push_back(particle.get_properties().data());
   }
 
+  template <int dim>
+  std::vector<std::string>
+  SurfacePoints<dim>::field_names()
+  {
+    std::vector<std::string> names = {"body", "pair"};
+    names.insert(names.end(), dim, "area");
+    names.insert(names.end(), dim, "slip");
+    names.insert(names.end(), {"contact_pressure", "gap"});
+    return names;
+  }
+
   template class SurfacePoints<2>;
   template class SurfacePoints<3>;
 } // namespace impm

@@ -191,6 +191,19 @@ namespace impm
           });
           return;
         }
+      for (const auto &body : state.rigid.bodies)
+        if (body.spec->name == criterion.of && body.spec->meets_surfaces)
+          {
+            const auto shift = body.displacement(0, state.time);
+            for_owned_cells<dim>(state, [&](const auto &cell) {
+              const auto   box    = box_of<dim>(cell);
+              const double radius = box.center().distance(box.vertex(0));
+              if (std::abs(body.spec->shape->proximity(box.center() - shift)
+                             .distance) <= criterion.distance + radius)
+                raise(levels[cell->active_cell_index()], criterion.level);
+            });
+            return;
+          }
       const auto tree = pack_rtree(boxes_of_body(criterion.of, state));
       for_owned_cells<dim>(state, [&](const auto &cell) {
         auto box = box_of<dim>(cell);

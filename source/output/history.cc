@@ -1,3 +1,4 @@
+#include <impm/balance/terms/contact.h>
 #include <impm/base/exceptions.h>
 #include <impm/base/names.h>
 #include <impm/output/history.h>
@@ -50,7 +51,7 @@ namespace impm
              const double         start_kinetic_energy,
              const double         energy_gain,
              const double         drift,
-             const bool           has_contact,
+             const Figures       &of_contact,
              const Figures       &figures)
     {
       Figures row = {{"step", report.step},
@@ -110,11 +111,24 @@ namespace impm
                   {"pieces", report.pieces},
                   {"flow_share", report.flow_share},
                   {"step_error", report.step_error}});
-      if (has_contact)
+      if (!of_contact.empty())
         row.insert(row.end(),
                    {{"contact_work", report.contact_work},
                     {"smallest_gap", report.smallest_gap}});
+      row.insert(row.end(), of_contact.begin(), of_contact.end());
       return row;
+    }
+
+    void
+    append(const std::string    &pair,
+           const ContactFigures &of_pair,
+           Figures              &figures)
+    {
+      figures.insert(figures.end(),
+                     {{pair + "_normal_force", of_pair.normal_force},
+                      {pair + "_friction_force", of_pair.friction_force},
+                      {pair + "_area", of_pair.area},
+                      {pair + "_largest_pressure", of_pair.largest_pressure}});
     }
 
     template <int dim>
@@ -181,17 +195,12 @@ namespace impm
       figures.emplace_back(probe.name, 0);
     for (const auto &reaction : scene.output.reactions)
       figures.emplace_back(reaction.name, 0);
+    Figures of_contact;
+    for (const auto &pair : scene.contact.pairs)
+      append(pair.name, {}, of_contact);
     std::vector<std::string> names;
-    for (const auto &column : make_row<dim>(scene.geometry,
-                                            {},
-                                            0,
-                                            {},
-                                            {},
-                                            0,
-                                            0,
-                                            0,
-                                            !scene.contact.pairs.empty(),
-                                            figures))
+    for (const auto &column : make_row<dim>(
+           scene.geometry, {}, 0, {}, {}, 0, 0, 0, of_contact, figures))
       names.push_back(column.first);
     return names;
   }
@@ -205,7 +214,6 @@ namespace impm
     , bodies(scene.bodies)
     , points(points)
     , grid(grid)
-    , has_contact(!scene.contact.pairs.empty())
     , names(column_names(scene))
     , followed(scene.output.probes.size(), -1)
     , reactions(scene.output.reactions.size())
@@ -285,6 +293,11 @@ namespace impm
                              const Vector           &forces)
   {
     potential = problem.response.potential;
+    of_contact.clear();
+    for (unsigned int q = 0; q < problem.scene.contact.pairs.size(); ++q)
+      append(problem.scene.contact.pairs[q].name,
+             problem.contact->figures(q, points.communicator),
+             of_contact);
     for (unsigned int r = 0; r < reactions.size(); ++r)
       {
         const auto  &spec = output.reactions[r];
@@ -337,7 +350,7 @@ namespace impm
                               start_kinetic_energy,
                               budget.gain,
                               drift,
-                              has_contact,
+                              of_contact,
                               figures);
     std::ostringstream line;
     line << std::setprecision(12);

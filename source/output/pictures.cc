@@ -5,8 +5,11 @@
 
 #include <deal.II/numerics/data_out.h>
 
+#include <deal.II/particles/data_out.h>
+
 #include <impm/base/exceptions.h>
 #include <impm/base/files.h>
+#include <impm/contact/surface_points.h>
 #include <impm/output/pictures.h>
 
 #include <fstream>
@@ -86,10 +89,12 @@ namespace impm
   Pictures<dim>::Pictures(const OutputSpec          &spec,
                           const MaterialPoints<dim> &points,
                           const RigidBodies<dim>    &rigid,
-                          const BackgroundGrid<dim> &grid)
+                          const BackgroundGrid<dim> &grid,
+                          const SurfacePoints<dim>  *surfaces)
     : points(points)
     , rigid(rigid)
     , grid(grid)
+    , surfaces(surfaces)
   {
     for (const auto &name : spec.point_fields)
       if (auto field = make_point_field(name, points, spec.fringe_number))
@@ -161,6 +166,23 @@ namespace impm
           add(particle.get_location());
         }
     save("particles", writer);
+    if (surfaces)
+      {
+        const auto        names_of_surfaces = SurfacePoints<dim>::field_names();
+        std::vector<Kind> kinds;
+        for (const auto &field : names_of_surfaces)
+          kinds.push_back(std::count(names_of_surfaces.begin(),
+                                     names_of_surfaces.end(),
+                                     field) > 1 ?
+                            Kind::component_is_part_of_vector :
+                            Kind::component_is_scalar);
+        Particles::DataOut<dim> surface_writer;
+        surface_writer.build_patches(surfaces->sorted.particles,
+                                     names_of_surfaces,
+                                     kinds);
+        surface_writer.set_flags(writer.flags);
+        save("surfaces", surface_writer);
+      }
 
     DataOut<dim> grid_writer;
     grid_writer.set_flags(writer.flags);

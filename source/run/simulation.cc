@@ -83,7 +83,7 @@ namespace impm
     , integrator(make_time_integrator(scene.time))
     , control(scene.time, integrator->order())
     , builder(scene.grid)
-    , pictures(scene.output, points, rigid, grid)
+    , pictures(scene.output, points, rigid, grid, surfaces.get())
     , history(scene, points, rigid, grid)
     , reference(scene, points, history)
     , console(verbosity, Utilities::MPI::this_mpi_process(communicator) == 0)

@@ -88,6 +88,7 @@ namespace impm
       int                    pair = -1;
       dealii::Tensor<1, dim> slip;
       double                 pressure = 0;
+      double                 gap      = 0; ///< (m)
     };
 
     void
@@ -96,6 +97,7 @@ namespace impm
       data[point][1] = meeting.pair;
       set_vector(point, offset_slip, meeting.slip);
       data[point][offset_pressure] = meeting.pressure;
+      data[point][offset_gap]      = meeting.gap;
     }
 
     void
@@ -113,7 +115,12 @@ namespace impm
     static constexpr unsigned int offset_area     = 2;
     static constexpr unsigned int offset_slip     = offset_area + dim;
     static constexpr unsigned int offset_pressure = offset_slip + dim;
-    static constexpr unsigned int n_fields        = offset_pressure + 1;
+    static constexpr unsigned int offset_gap      = offset_pressure + 1;
+    static constexpr unsigned int n_fields        = offset_gap + 1;
+
+    /** Names of the fields, one for each component. */
+    static std::vector<std::string>
+    field_names();
 
   private:
     const BackgroundGrid<dim> &grid;

@@ -171,7 +171,6 @@ namespace impm
     const MaterialPoints<dim>     &points;
     const BackgroundGrid<dim>     &grid;
     PointsPerCell                  density;
-    const bool                     has_contact;
     const std::vector<std::string> names; ///< of columns
     /** By probe, which points there: the number of its point, or -1. */
     std::vector<double>                             followed;
@@ -185,7 +184,7 @@ namespace impm
     EnergyBudget  budget;
     bool          may_drift = true; ///< points began where F says
     double        drift     = 0;
-    Figures       figures;
+    Figures       figures, of_contact;
     std::string   file_name;
     std::ofstream file;
     unsigned long size = 0; ///< of the file, in whole rows (bytes)

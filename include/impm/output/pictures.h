@@ -11,9 +11,13 @@
 
 namespace impm
 {
+  template <int dim>
+  class SurfacePoints;
+
   /**
-   * particles.pvd and grid.pvd with their VTU files, to be opened in ParaView.
-   * The PVD files are replaced in one move, once all that they name is there.
+   * particles.pvd, grid.pvd and, with contact, surfaces.pvd with their VTU
+   * files, to be opened in ParaView. The PVD files are replaced in one move,
+   * once all that they name is there.
    */
   template <int dim>
   class Pictures
@@ -22,7 +26,8 @@ namespace impm
     Pictures(const OutputSpec          &spec,
              const MaterialPoints<dim> &points,
              const RigidBodies<dim>    &rigid,
-             const BackgroundGrid<dim> &grid);
+             const BackgroundGrid<dim> &grid,
+             const SurfacePoints<dim>  *surfaces = nullptr);
 
     /**
      * Adds a picture of the points as they are and of the grid, which shows
@@ -47,6 +52,7 @@ namespace impm
     const MaterialPoints<dim>   &points;
     const RigidBodies<dim>      &rigid;
     const BackgroundGrid<dim>   &grid;
+    const SurfacePoints<dim>    *surfaces; ///< or null
     std::vector<PointField<dim>> fields;
     unsigned int                 n_written = 0;
 

@@ -263,6 +263,31 @@ namespace impm
   }
 
   template <int dim>
+  ContactFigures
+  Contact<dim>::figures(const unsigned int pair,
+                        const MPI_Comm     communicator) const
+  {
+    double sums[3] = {}; // force, friction, area
+    double largest = 0;
+    for (unsigned int l = 0; l < states.size(); ++l)
+      if (const auto &link = all.links[l]; link.pair == pair)
+        {
+          const double p = states[l].pressure;
+          if (!link.is_bond && p == 0)
+            continue;
+          sums[0] += link.area * p;
+          sums[1] += link.area * (states[l].gradient + p * link.normal).norm();
+          sums[2] += link.area;
+          largest = std::max(largest, p);
+        }
+    Utilities::MPI::sum(sums, communicator, sums);
+    return {sums[0],
+            sums[1],
+            sums[2],
+            Utilities::MPI::max(largest, communicator)};
+  }
+
+  template <int dim>
   double
   Contact<dim>::work_of_obstacles() const
   {
@@ -304,6 +329,7 @@ namespace impm
         meeting.pair     = link.pair;
         meeting.pressure = state.pressure;
         meeting.slip     = state.slip;
+        meeting.gap      = state.gap;
         if (link.is_bond)
           continue;
         const double most = link.friction * state.pressure /

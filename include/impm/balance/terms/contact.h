@@ -6,6 +6,14 @@
 
 namespace impm
 {
+  /** What a pair of bodies does where their surfaces touch, or are bonded: sums
+   * of pressure and of friction, each without regard to its direction (N), the
+   * area (m^2), and the largest pressure (Pa). */
+  struct ContactFigures
+  {
+    double normal_force = 0, friction_force = 0, area = 0, largest_pressure = 0;
+  };
+
   /**
    * Contact and bonds between surfaces. The outermost layer of a body, as thick
    * as d, a small part of a cell, is as stiff as its material is for
@@ -72,6 +80,10 @@ namespace impm
      * of this rank. */
     dealii::Tensor<1, dim>
     force_on_partner(unsigned int pair) const;
+
+    /** Of a pair of the scene, in the state. Collective. */
+    ContactFigures
+    figures(unsigned int pair, MPI_Comm communicator) const;
 
     /** The work (J) of obstacles on the bodies in the step, taking forces for
      * the mean of those at both ends. Of this rank. */

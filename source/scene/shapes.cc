@@ -110,6 +110,9 @@ namespace impm
       return {[box](const Point<dim> &point) {
                 return box.point_inside(point, tolerance);
               },
+              [lower, upper](const Point<dim> &point) {
+                return proximity_to_box(point, lower, upper);
+              },
               box,
               true};
     }
@@ -124,6 +127,9 @@ namespace impm
       box.extend(radius);
       return {[centre, radius](const Point<dim> &point) {
                 return centre.distance(point) <= radius * (1 + tolerance);
+              },
+              [centre, radius](const Point<dim> &point) {
+                return proximity_to_ball(point, centre, radius);
               },
               box};
     }
@@ -147,6 +153,9 @@ namespace impm
         return along >= -margin && along <= length + margin &&
                (offset - along * axis).norm() <= radius + margin;
       };
+      const auto proximity = [=](const Point<3> &point) {
+        return proximity_to_cylinder(point, from, axis, length, radius);
+      };
 
       // The ends are discs, which reach the farther in a direction the less
       // the axis points there.
@@ -155,7 +164,7 @@ namespace impm
         reach[d] = radius * std::sqrt(std::max(0., 1 - axis[d] * axis[d]));
       BoundingBox<3> box({from - reach, from + reach});
       box.merge_with(BoundingBox<3>({to - reach, to + reach}));
-      return {is_inside, box};
+      return {is_inside, proximity, box};
     }
 
     template <int dim>
@@ -172,6 +181,14 @@ namespace impm
                 return any_of(shapes, [&](const auto &shape) {
                   return shape->contains(point);
                 });
+              },
+              [shapes](const Point<dim> &point) {
+                auto nearest = shapes.front()->proximity(point);
+                for (unsigned int i = 1; i < shapes.size(); ++i)
+                  if (const auto next = shapes[i]->proximity(point);
+                      next.distance < nearest.distance)
+                    nearest = next;
+                return nearest;
               },
               box};
     }
@@ -201,6 +218,11 @@ namespace impm
       return {[whole, cuts](const Point<dim> &point) {
                 return whole->contains(point) && !cuts.contains(point);
               },
+              [whole, cuts](const Point<dim> &point) {
+                const auto outer = whole->proximity(point);
+                const auto inner = turn(cuts.proximity(point));
+                return inner.distance > outer.distance ? inner : outer;
+              },
               whole->bounding_box};
     }
 
@@ -217,6 +239,9 @@ namespace impm
         throw InputError(entry, "found '', allowed is an expression");
       return {[parser](const Point<dim> &point) {
                 return parser->value(point) <= 0;
+              },
+              [parser](const Point<dim> &point) {
+                return proximity_to_zero<dim>(point, *parser);
               },
               std::nullopt};
     }

@@ -5,6 +5,8 @@
 #include <deal.II/base/parameter_handler.h>
 #include <deal.II/base/point.h>
 
+#include <impm/scene/proximity.h>
+
 #include <functional>
 #include <map>
 #include <memory>
@@ -20,6 +22,17 @@ namespace impm
   {
     /** Whether a point lies inside or on the surface. */
     std::function<bool(const dealii::Point<dim> &)> contains;
+
+    /**
+     * Where a place lies relative to the surface. Box, ball and cylinder know
+     * it exactly. A union takes the nearest of its parts: exact outside, while
+     * inside a surface that two parts share counts as one. A difference takes
+     * the farther of the whole and the outside of its cuts: exact inside a
+     * whole that is, and outside up to corners that the cuts have made, where
+     * the distance may be too small. A function is exact to first order at its
+     * surface, and without curvature.
+     */
+    std::function<Proximity<dim>(const dealii::Point<dim> &)> proximity;
 
     /** A box around it, unless an implicit function does not know one. */
     std::optional<dealii::BoundingBox<dim>> bounding_box;

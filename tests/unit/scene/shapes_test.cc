@@ -1,9 +1,8 @@
 #include <impm/base/exceptions.h>
-#include <impm/scene/shapes.h>
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
+#include "create_shape.h"
 
 using namespace impm;
 using dealii::BoundingBox;
@@ -11,37 +10,6 @@ using dealii::Point;
 
 namespace
 {
-  using Entries = std::map<std::string, std::string>;
-
-  template <int dim>
-  const ShapeEntry<dim> &
-  find(const std::string &kind)
-  {
-    const auto &list = shape_list<dim>();
-    const auto  entry =
-      std::find_if(list.begin(), list.end(), [&](const auto &candidate) {
-        return candidate.name == kind;
-      });
-    if (entry == list.end())
-      throw std::logic_error("no shape is called " + kind);
-    return *entry;
-  }
-
-  template <int dim>
-  std::shared_ptr<const Shape<dim>>
-  create(const std::string                   &kind,
-         const Entries                       &entries,
-         const NamedShapes<dim>              &others    = {},
-         const std::map<std::string, double> &constants = {})
-  {
-    dealii::ParameterHandler prm;
-    find<dim>(kind).declare(prm);
-    for (const auto &[name, value] : entries)
-      prm.set(name, value);
-    return std::make_shared<const Shape<dim>>(
-      find<dim>(kind).create(prm, constants, others));
-  }
-
   /** Expects an InputError about `entry` that says all of `words`. */
   template <typename Action>
   void

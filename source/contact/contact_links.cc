@@ -129,9 +129,10 @@ namespace impm
     for (const auto &particle : points.sorted.particles)
       {
         const unsigned int body = points.body(s);
-        const auto         x    = particle.get_location();
+        const Point<dim>   x    = particle.get_location() + points.beyond(s);
         const auto         cell = particle.get_surrounding_cell();
-        own.push_back({x, cell, scene.bodies[body].layer});
+        own.push_back(
+          {particle.get_location(), cell, scene.bodies[body].layer});
         double extent = cell_extent(cell, 0);
         for (unsigned int d = 1; d < dim; ++d)
           extent = std::min(extent, cell_extent(cell, d));
@@ -149,7 +150,7 @@ namespace impm
               continue;
             const unsigned int partner = is_second ? pair.body : pair.partner;
             const auto         area    = points.area(s);
-            Place              other{x, cell, {}};
+            Place              other{particle.get_location(), cell, {}};
             ContactLink<dim>   link;
             link.point     = s;
             link.pair      = q;

@@ -132,7 +132,10 @@ namespace impm
         const double share =
           weight * (is_inner ? 1 + b * along(places[i] - place, n) : 1.);
         sum += share;
-        result.gap += share * (n * (place - places[i]));
+        // The plane across the mean normal is as much too low as that of the
+        // patch is too high.
+        result.gap +=
+          share * (0.5 * (n + patches[i].normal) * (place - places[i]));
       }
     result.gap /= sum;
     if (std::abs(result.gap) > reach)

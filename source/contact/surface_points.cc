@@ -29,6 +29,19 @@ namespace impm
       return result;
     }
 
+    /** The middle of a piece lies on a chord of a curved surface, off it by
+     * more than layers that touch give way. */
+    template <int dim>
+    Point<dim>
+    onto_surface(const SurfacePiece<dim> &piece, const Shape<dim> &shape)
+    {
+      const auto   proximity = shape.proximity(piece.position);
+      const double size      = std::pow(piece.area.norm(), 1. / (dim - 1));
+      return std::abs(proximity.distance) < 0.25 * size ?
+               piece.position - proximity.distance * proximity.normal :
+               piece.position;
+    }
+
     /** The pair by which a point on the surface of a body is bonded from the
      * start, or -1. */
     template <int dim>
@@ -75,6 +88,26 @@ namespace impm
       {
         seeds.clear();
         areas.clear();
+        const auto add = [&](const auto           &cell,
+                             const Point<dim>     &from,
+                             const Tensor<1, dim> &extents) {
+          for (const auto &piece : surface_in_box<dim>(
+                 *bodies[b].shape, from, extents, bodies[b].points_per_cell))
+            {
+              Seed<dim> seed{};
+              seed.position = onto_surface(piece, *bodies[b].shape);
+              for (unsigned int d = 0; d < dim; ++d)
+                seed.unit_position[d] =
+                  (seed.position[d] - cell->vertex(0)[d]) / extents[d];
+              seed.cell   = cell;
+              seed.domain = extents;
+              seeds.push_back(seed);
+              areas.push_back(geometry == GeometryKind::axisymmetric ?
+                                2 * numbers::PI * seed.position[0] *
+                                  piece.area :
+                                piece.area);
+            }
+        };
         for (const auto &cell : grid.triangulation.active_cell_iterators())
           if (cell->is_locally_owned())
             {
@@ -82,25 +115,18 @@ namespace impm
               Tensor<1, dim>   extents;
               for (unsigned int d = 0; d < dim; ++d)
                 extents[d] = cell_extent(cell, d);
-              for (const auto &piece :
-                   surface_in_box<dim>(*bodies[b].shape,
-                                       lower,
-                                       extents,
-                                       bodies[b].points_per_cell))
-                {
-                  Seed<dim> seed{};
-                  seed.position = piece.position;
-                  for (unsigned int d = 0; d < dim; ++d)
-                    seed.unit_position[d] =
-                      (piece.position[d] - lower[d]) / extents[d];
-                  seed.cell   = cell;
-                  seed.domain = extents;
-                  seeds.push_back(seed);
-                  areas.push_back(geometry == GeometryKind::axisymmetric ?
-                                    2 * numbers::PI * piece.position[0] *
-                                      piece.area :
-                                    piece.area);
-                }
+              add(cell, lower, extents);
+              // What lies on a face of the domain is in what is beyond.
+              for (const auto &pair : contact.pairs)
+                if (pair.body == b && pair.partner_kind == PartnerKind::face &&
+                    cell->face(pair.partner)->at_boundary())
+                  {
+                    Point<dim> beyond = lower;
+                    beyond[pair.partner / 2] +=
+                      (pair.partner % 2 == 0 ? -1 : 1) *
+                      extents[pair.partner / 2];
+                    add(cell, beyond, extents);
+                  }
             }
         unsigned int next = 0;
         sorted.insert(seeds, [&](const Seed<dim> &seed, double *fields) {
@@ -117,20 +143,25 @@ namespace impm
   void
   SurfacePoints<dim>::sort()
   {
+    const double most = 0.25 * grid.discretization()->smallest_cell_extent;
     for (auto &particle : sorted.particles)
       {
-        auto place = particle.get_location();
+        const auto fields = particle.get_properties();
+        Point<dim> kept   = particle.get_location();
         for (unsigned int d = 0; d < dim; ++d)
           {
-            const double lower = grid.face_of_vertices(2 * d);
-            const double upper = grid.face_of_vertices(2 * d + 1);
-            const double slack = 1e-9 * (upper - lower);
-            if (place[d] < lower && place[d] > lower - slack)
-              place[d] = lower;
-            if (place[d] > upper && place[d] < upper + slack)
-              place[d] = upper;
+            double      &beyond = fields[offset_beyond + d];
+            const double lower  = grid.face_of_vertices(2 * d);
+            const double upper  = grid.face_of_vertices(2 * d + 1);
+            const double place  = kept[d] + beyond;
+            kept[d]             = place;
+            if (place < lower && place > lower - most)
+              kept[d] = lower;
+            if (place > upper && place < upper + most)
+              kept[d] = upper;
+            beyond = place - kept[d];
           }
-        particle.set_location(place);
+        particle.set_location(kept);
       }
     sorted.sort();
     if (sees_others)
@@ -149,6 +180,7 @@ namespace impm
     names.insert(names.end(), dim, "area");
     names.insert(names.end(), dim, "slip");
     names.insert(names.end(), {"contact_pressure", "gap"});
+    names.insert(names.end(), dim, "beyond_face");
     return names;
   }
 

@@ -102,12 +102,8 @@ namespace impm
             double extent = cell_extent(cell, 0);
             for (unsigned int d = 1; d < dim; ++d)
               extent = std::min(extent, cell_extent(cell, d));
-            cells.push_back({cell,
-                             piece.layer,
-                             discretization.nodes_of(cell, piece.layer),
-                             0,
-                             0,
-                             extent});
+            cells.push_back(
+              {cell, discretization.nodes_of(cell, piece.layer), 0, 0, extent});
           }
         ++cells[slot].end;
       }

@@ -23,9 +23,10 @@ namespace impm
         for (unsigned int e = cell.begin; e < cell.end; ++e)
           smallest = std::min(smallest,
                               points.material(footprints.point[e]).stiffness());
-        stiffness[cell.layer][cell.cell->active_cell_index()] = smallest;
+        const unsigned int layer = discretization.layer(cell.nodes[0]);
+        stiffness[layer][cell.cell->active_cell_index()] = smallest;
         if (cell.cell->is_locally_owned())
-          cells.push_back({cell.cell, cell.layer, cell.nodes});
+          cells.push_back({cell.cell, layer, cell.nodes});
       }
     if (Utilities::MPI::n_mpi_processes(discretization.communicator) == 1)
       return;
@@ -38,7 +39,7 @@ namespace impm
         Vector compliance(
           triangulation.global_active_cell_index_partitioner().lock());
         for (const auto &cell : footprints.cells)
-          if (cell.layer == layer)
+          if (discretization.layer(cell.nodes[0]) == layer)
             compliance(cell.cell->global_active_cell_index()) =
               1 / of_layer[cell.cell->active_cell_index()];
         compliance.compress(VectorOperation::max);

@@ -26,7 +26,8 @@ namespace impm
   /**
    * Surfaces as planes through the middle of what is near: points of a surface
    * weighed by how near they are, and such that their middle is the place that
-   * is looked at wherever the surface goes on to all sides: planes are exact.
+   * is looked at wherever the surface goes on to all sides: planes are exact,
+   * curved surfaces right to third order in the spacing.
    */
   template <int dim>
   class FacedSurface

@@ -25,9 +25,8 @@ namespace impm
                   const BackgroundGrid<dim> &grid);
 
     /** Sorts the points into cells, takes their addresses, and lets ranks know
-     * those near their cells. Those that
-     * round-off has carried through a face of the domain are put back.
-     * Collective. */
+     * those near their cells. Those that are a little beyond a face of the
+     * domain are kept on it. Collective. */
     void
     sort();
 
@@ -82,6 +81,14 @@ namespace impm
       return static_cast<int>(data[point][1]);
     }
 
+    /** From where the point is kept to where it is, if that is beyond a face of
+     * the domain, on which it is pressed (m). */
+    dealii::Tensor<1, dim>
+    beyond(const unsigned int point) const
+    {
+      return vector(point, offset_beyond);
+    }
+
     /** What a point has met. */
     struct Meeting
     {
@@ -116,7 +123,8 @@ namespace impm
     static constexpr unsigned int offset_slip     = offset_area + dim;
     static constexpr unsigned int offset_pressure = offset_slip + dim;
     static constexpr unsigned int offset_gap      = offset_pressure + 1;
-    static constexpr unsigned int n_fields        = offset_gap + 1;
+    static constexpr unsigned int offset_beyond   = offset_gap + 1;
+    static constexpr unsigned int n_fields        = offset_beyond + dim;
 
     /** Names of the fields, one for each component. */
     static std::vector<std::string>

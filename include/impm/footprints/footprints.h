@@ -30,7 +30,6 @@ namespace impm
     struct Cell
     {
       CellIterator                      cell; ///< owned, or a ghost cell
-      unsigned int                      layer;
       std::array<unsigned int, n_nodes> nodes;
       unsigned int                      begin, end; ///< its entries
       double                            extent;     ///< smallest (m)

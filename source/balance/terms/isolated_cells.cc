@@ -86,7 +86,8 @@ namespace impm
         held[piece] |= bits;
 
     const auto is_isolated = [&](const auto &cell) {
-      return held.at(label[cell.layer][cell.cell->active_cell_index()]) !=
+      const unsigned int layer = discretization.layer(cell.nodes[0]);
+      return held.at(label[layer][cell.cell->active_cell_index()]) !=
              (1u << dim) - 1;
     };
     for (const auto &cell : populated.cells)

@@ -257,7 +257,7 @@ namespace impm
     section.add(
       "Thickness",
       contact.thickness,
-      {"0.05", 1e-4, 0.5},
+      {"0.1", 1e-4, 0.5},
       "Of the layer of bodies, in cells, that gives way where surfaces "
       "press on each other. It is as stiff as the softer of both "
       "bodies.");

@@ -42,7 +42,7 @@ namespace impm
     std::vector<ContactPair> pairs;
 
     /** Of the layer of a body that gives way, in cells. */
-    double thickness = 0.05;
+    double thickness = 0.1;
   };
 
   /**

@@ -59,16 +59,12 @@ namespace impm
       if (!points.sees_others)
         return patches;
       const auto add = [&](const auto &particle) {
-        const double  *fields = particle.get_properties().data();
-        const auto     x      = particle.get_location();
-        Tensor<1, dim> area;
-        std::copy_n(fields + points.offset_area, dim, area.begin_raw());
-        const double around = points.geometry == GeometryKind::axisymmetric ?
-                                2 * numbers::PI * x[0] :
-                                1.;
+        const double *fields = particle.get_properties().data();
+        const auto    x      = particle.get_location();
+        const auto    area   = points.normal_of(fields + points.offset_edges);
         patches.push_back({x,
                            area / area.norm(),
-                           std::pow(area.norm() / around, 1. / (dim - 1)),
+                           std::pow(area.norm(), 1. / (dim - 1)),
                            static_cast<unsigned int>(fields[0])});
       };
       for (const auto &particle : points.sorted.particles)

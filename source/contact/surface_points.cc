@@ -2,6 +2,7 @@
 #include <impm/scene/surface_of_shape.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace impm
 {
@@ -27,6 +28,33 @@ namespace impm
                         }))
           result.push_back(b);
       return result;
+    }
+
+    /** A square with this outward normal times area. */
+    template <int dim>
+    typename SurfacePoints<dim>::Edges
+    edges_of(const Tensor<1, dim> &area)
+    {
+      typename SurfacePoints<dim>::Edges edges;
+      if constexpr (dim == 2)
+        {
+          edges[0][0] = -area[1];
+          edges[0][1] = area[0];
+        }
+      else
+        {
+          const auto   n = area / area.norm();
+          unsigned int d = 0; // the axis that is the most along the surface
+          for (unsigned int e = 1; e < dim; ++e)
+            if (std::abs(n[e]) < std::abs(n[d]))
+              d = e;
+          Tensor<1, dim> axis;
+          axis[d]  = 1;
+          edges[1] = cross_product_3d(n, axis);
+          edges[1] *= std::sqrt(area.norm()) / edges[1].norm();
+          edges[0] = cross_product_3d(edges[1], n);
+        }
+      return edges;
     }
 
     /** The middle of a piece lies on a chord of a curved surface, off it by
@@ -80,14 +108,15 @@ namespace impm
                                        pair.kind != ContactKind::bonded;
                               }))
     , communicator(grid.communicator)
+    , bodies(bodies)
     , grid(grid)
   {
-    std::vector<Seed<dim>>      seeds;
-    std::vector<Tensor<1, dim>> areas;
+    std::vector<Seed<dim>> seeds;
+    std::vector<Edges>     edges;
     for (const unsigned int b : bodies_with_surface(contact, bodies))
       {
         seeds.clear();
-        areas.clear();
+        edges.clear();
         const auto add = [&](const auto           &cell,
                              const Point<dim>     &from,
                              const Tensor<1, dim> &extents) {
@@ -102,10 +131,7 @@ namespace impm
               seed.cell   = cell;
               seed.domain = extents;
               seeds.push_back(seed);
-              areas.push_back(geometry == GeometryKind::axisymmetric ?
-                                2 * numbers::PI * seed.position[0] *
-                                  piece.area :
-                                piece.area);
+              edges.push_back(edges_of<dim>(piece.area));
             }
         };
         for (const auto &cell : grid.triangulation.active_cell_iterators())
@@ -133,7 +159,10 @@ namespace impm
           std::fill_n(fields, n_fields, 0.);
           fields[0] = b;
           fields[1] = find_bond(contact, bodies, b, seed);
-          std::copy_n(areas[next++].begin_raw(), dim, fields + offset_area);
+          for (unsigned int k = 0; k < dim - 1; ++k)
+            for (unsigned int d = 0; d < dim; ++d)
+              fields[offset_edges + k * dim + d] = edges[next][k][d];
+          ++next;
         });
       }
     sort();
@@ -167,9 +196,99 @@ namespace impm
     if (sees_others)
       sorted.particles.exchange_ghost_particles();
     data.clear();
-    data.reserve(sorted.particles.n_locally_owned_particles());
+    around.clear();
     for (auto &particle : sorted.particles)
-      data.push_back(particle.get_properties().data());
+      {
+        data.push_back(particle.get_properties().data());
+        around.push_back(geometry == GeometryKind::axisymmetric ?
+                           2 * numbers::PI * particle.get_location()[0] :
+                           1.);
+      }
+  }
+
+  template <int dim>
+  void
+  SurfacePoints<dim>::split()
+  {
+    std::vector<Seed<dim>>           seeds;
+    std::vector<std::vector<double>> children;
+    unsigned int                     s = 0;
+    for (auto &particle : sorted.particles)
+      {
+        const unsigned int point   = s++;
+        const auto         cell    = particle.get_surrounding_cell();
+        const double       longest = 1.1 / bodies[body(point)].points_across;
+        auto               parts   = edges(point);
+        std::array<unsigned int, dim - 1> n;
+        unsigned int                      n_parts = 1;
+        for (unsigned int k = 0; k < dim - 1; ++k)
+          {
+            double share = 0; // of the cell
+            for (unsigned int d = 0; d < dim; ++d)
+              share =
+                std::max(share, std::abs(parts[k][d]) / cell_extent(cell, d));
+            n[k] = share > longest ? std::ceil(share / longest) : 1;
+            n_parts *= n[k];
+            parts[k] /= n[k];
+          }
+        if (n_parts == 1)
+          continue;
+        set_edges(point, parts);
+        const Point<dim> middle = particle.get_location();
+        for (unsigned int i = 0; i < n_parts; ++i)
+          {
+            Point<dim>   place = middle;
+            unsigned int rest  = i;
+            for (unsigned int k = 0; k < dim - 1; ++k)
+              {
+                place += (rest % n[k] + 0.5 - 0.5 * n[k]) * parts[k];
+                rest /= n[k];
+              }
+            if (i == 0)
+              {
+                particle.set_location(place);
+                continue;
+              }
+            Seed<dim> seed{};
+            seed.cell     = cell;
+            seed.position = place;
+            for (unsigned int d = 0; d < dim; ++d)
+              seed.unit_position[d] = 0.5; // until they are sorted
+            seeds.push_back(seed);
+            children.emplace_back(data[point], data[point] + n_fields);
+          }
+      }
+    if (Utilities::MPI::max<unsigned int>(seeds.size(), communicator) == 0)
+      return;
+    unsigned int child = 0;
+    sorted.insert(seeds, [&](const Seed<dim> &, double *fields) {
+      const auto &from = children[child++];
+      std::copy(from.begin(), from.end(), fields);
+    });
+    sort();
+  }
+
+  template <>
+  Tensor<1, 2>
+  SurfacePoints<2>::normal_of(const double *edges)
+  {
+    Tensor<1, 2> normal;
+    normal[0] = edges[1];
+    normal[1] = -edges[0];
+    return normal;
+  }
+
+  template <>
+  Tensor<1, 3>
+  SurfacePoints<3>::normal_of(const double *edges)
+  {
+    Tensor<1, 3> first, second;
+    for (unsigned int d = 0; d < 3; ++d)
+      {
+        first[d]  = edges[d];
+        second[d] = edges[3 + d];
+      }
+    return cross_product_3d(first, second);
   }
 
   template <int dim>
@@ -177,7 +296,8 @@ namespace impm
   SurfacePoints<dim>::field_names()
   {
     std::vector<std::string> names = {"body", "pair"};
-    names.insert(names.end(), dim, "area");
+    for (unsigned int k = 1; k < dim; ++k)
+      names.insert(names.end(), dim, "edge_" + std::to_string(k));
     names.insert(names.end(), dim, "slip");
     names.insert(names.end(), {"contact_pressure", "gap"});
     names.insert(names.end(), dim, "beyond_face");

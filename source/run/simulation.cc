@@ -143,6 +143,8 @@ namespace impm
   void
   Simulation<dim>::resample()
   {
+    if (surfaces)
+      surfaces->split();
     const auto changes = adapt_points(scene.bodies, grid, points);
     report.splits += changes.splits;
     report.merges += changes.merges;

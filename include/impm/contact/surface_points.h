@@ -4,6 +4,7 @@
 #include <impm/input/sections/contact.h>
 #include <impm/points/material_points.h>
 
+#include <array>
 #include <vector>
 
 namespace impm
@@ -30,6 +31,11 @@ namespace impm
     void
     sort();
 
+    /** Splits points whose pieces have become longer than so many should be
+     * that a body wishes across a cell. Collective. */
+    void
+    split();
+
     /** Of this rank. */
     unsigned int
     size() const
@@ -37,7 +43,7 @@ namespace impm
       return data.size();
     }
 
-    /** See offset_area. */
+    /** See offset_edges. */
     const double *
     fields(const unsigned int point) const
     {
@@ -51,12 +57,31 @@ namespace impm
       return static_cast<unsigned int>(data[point][0]);
     }
 
-    /** Outward normal times area (m^2; of the whole ring in axisymmetry, per
-     * metre of thickness in the plane). */
+    /** Outward normal times area, where the point was sorted last (m^2; of the
+     * whole ring in axisymmetry, per metre of thickness in the plane). */
     dealii::Tensor<1, dim>
     area(const unsigned int point) const
     {
-      return vector(point, offset_area);
+      return around[point] * normal_of(data[point] + offset_edges);
+    }
+
+    /** Edges of a piece of surface (m), one after the other. */
+    using Edges = std::array<dealii::Tensor<1, dim>, dim - 1>;
+
+    Edges
+    edges(const unsigned int point) const
+    {
+      Edges result;
+      for (unsigned int k = 0; k < dim - 1; ++k)
+        result[k] = vector(point, offset_edges + k * dim);
+      return result;
+    }
+
+    void
+    set_edges(const unsigned int point, const Edges &edges)
+    {
+      for (unsigned int k = 0; k < dim - 1; ++k)
+        set_vector(point, offset_edges + k * dim, edges[k]);
     }
 
     /** Of friction, before it gives way, or of a bond: how far the other
@@ -107,20 +132,14 @@ namespace impm
       data[point][offset_gap]      = meeting.gap;
     }
 
-    void
-    set_area(const unsigned int point, const dealii::Tensor<1, dim> &area)
-    {
-      set_vector(point, offset_area, area);
-    }
-
     SortedParticles<dim> sorted;
     const GeometryKind   geometry;
     const bool           sees_others; ///< surfaces of other bodies
     const MPI_Comm       communicator;
 
     // Within the fields of a point: body, pair, and these.
-    static constexpr unsigned int offset_area     = 2;
-    static constexpr unsigned int offset_slip     = offset_area + dim;
+    static constexpr unsigned int offset_edges = 2;
+    static constexpr unsigned int offset_slip  = offset_edges + dim * (dim - 1);
     static constexpr unsigned int offset_pressure = offset_slip + dim;
     static constexpr unsigned int offset_gap      = offset_pressure + 1;
     static constexpr unsigned int offset_beyond   = offset_gap + 1;
@@ -130,7 +149,13 @@ namespace impm
     static std::vector<std::string>
     field_names();
 
+    /** Outward normal times area of a piece in the plane or in space, given its
+     * edges. */
+    static dealii::Tensor<1, dim>
+    normal_of(const double *edges);
+
   private:
+    const Bodies<dim>         &bodies;
     const BackgroundGrid<dim> &grid;
 
     dealii::Tensor<1, dim>
@@ -150,6 +175,7 @@ namespace impm
     }
 
     std::vector<double *> data;
+    std::vector<double>   around; ///< circumference (m), or 1, by point
   };
 } // namespace impm
 

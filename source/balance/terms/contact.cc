@@ -343,17 +343,12 @@ namespace impm
     unsigned int s            = 0;
     for (auto &particle : points.sorted.particles)
       {
-        const auto   x    = particle.get_location();
-        const double hoop = points.geometry == GeometryKind::axisymmetric ?
-                              1 + ways[s][0] / x[0] :
-                              1.;
-        // Nanson's formula
-        points.set_area(s,
-                        hoop * determinant(deformations[s]) *
-                          (transpose(invert(deformations[s])) *
-                           points.area(s)));
+        auto edges = points.edges(s);
+        for (auto &edge : edges)
+          edge = deformations[s] * edge;
+        points.set_edges(s, edges);
         points.set_meeting(s, meetings[s]);
-        particle.set_location(x + ways[s]);
+        particle.set_location(particle.get_location() + ways[s]);
         ++s;
       }
   }

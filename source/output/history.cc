@@ -324,7 +324,8 @@ namespace impm
       throw ComputationError("at t = " + Utilities::to_string(report.time) +
                              " s: the energy of the points is no finite "
                              "number: they are too fast, or too much deformed");
-    budget.update(all_energy(totals),
+    // What friction has taken is not lost to the method.
+    budget.update(all_energy(totals) + report.contact_work,
                   report.external_work + report.resampling_kinetic_energy +
                     report.resampling_internal_energy,
                   report.uncertain_work);

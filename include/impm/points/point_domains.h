@@ -64,6 +64,12 @@ namespace impm
       for (unsigned int j = i; j < dim; ++j)
         for (unsigned int k = 0; k < dim; ++k)
           C[i][j] += F[k][i] * F[k][j];
+    // Of numbers next to nothing deal.II finds no vectors.
+    const double nothing = 1e-30 * trace(C);
+    for (unsigned int i = 0; i < dim; ++i)
+      for (unsigned int j = i + 1; j < dim; ++j)
+        if (std::abs(C[i][j]) < nothing)
+          C[i][j] = 0;
     dealii::Tensor<1, dim> stretch;
     for (const auto &[square, axis] : eigenvectors(C))
       for (unsigned int d = 0; d < dim; ++d)

@@ -60,7 +60,7 @@ namespace impm
         return patches;
       const auto add = [&](const auto &particle) {
         const double  *fields = particle.get_properties().data();
-        const auto     x      = particle.get_location();
+        const auto     x      = points.place(particle);
         Tensor<1, dim> area;
         std::copy_n(fields + points.offset_area, dim, area.begin_raw());
         const double around = points.geometry == GeometryKind::axisymmetric ?
@@ -129,7 +129,7 @@ namespace impm
     for (const auto &particle : points.sorted.particles)
       {
         const unsigned int body = points.body(s);
-        const auto         x    = particle.get_location();
+        const auto         x    = points.place(particle);
         const auto         cell = particle.get_surrounding_cell();
         own.push_back({x, cell, scene.bodies[body].layer});
         double extent = cell_extent(cell, 0);

@@ -2,6 +2,7 @@
 #include <impm/scene/surface_of_shape.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace impm
 {
@@ -50,6 +51,43 @@ namespace impm
           return q;
       return -1;
     }
+
+    /** The surface of a body in a cell, and that on faces of the domain, which
+     * the body meets, at the cell. */
+    template <int dim, typename Cell>
+    std::vector<SurfacePiece<dim>>
+    surface_in_cell(const ContactSpec   &contact,
+                    const BodySpec<dim> &body,
+                    const unsigned int   b,
+                    const Cell          &cell)
+    {
+      Tensor<1, dim> extents;
+      for (unsigned int d = 0; d < dim; ++d)
+        extents[d] = cell_extent(cell, d);
+      auto pieces = surface_in_box<dim>(*body.shape,
+                                        cell->vertex(0),
+                                        extents,
+                                        body.points_per_cell);
+      for (const auto &pair : contact.pairs)
+        if (pair.body == b && pair.partner_kind == PartnerKind::face &&
+            cell->at_boundary(pair.partner))
+          {
+            // The box outside, of which the plane of the face is a part.
+            const unsigned int d     = pair.partner / 2;
+            const bool         upper = pair.partner % 2 == 1;
+            Point<dim>         lower = cell->vertex(0);
+            const double       plane = lower[d] + (upper ? extents[d] : 0);
+            lower[d] += (upper ? 1 : -1) * extents[d];
+            for (auto piece : surface_in_box<dim>(
+                   *body.shape, lower, extents, body.points_per_cell))
+              if (std::abs(piece.position[d] - plane) < 1e-6 * extents[d])
+                {
+                  piece.position[d] = plane;
+                  pieces.push_back(piece);
+                }
+          }
+      return pieces;
+    }
   } // namespace
 
   template <int dim>
@@ -83,10 +121,7 @@ namespace impm
               for (unsigned int d = 0; d < dim; ++d)
                 extents[d] = cell_extent(cell, d);
               for (const auto &piece :
-                   surface_in_box<dim>(*bodies[b].shape,
-                                       lower,
-                                       extents,
-                                       bodies[b].points_per_cell))
+                   surface_in_cell<dim>(contact, bodies[b], b, cell))
                 {
                   Seed<dim> seed{};
                   seed.position = piece.position;
@@ -117,20 +152,21 @@ namespace impm
   void
   SurfacePoints<dim>::sort()
   {
+    // Who goes further has not come to press on a face.
+    const double slack = 0.5 * grid.discretization()->smallest_cell_extent;
     for (auto &particle : sorted.particles)
       {
-        auto place = particle.get_location();
+        const auto at     = place(particle);
+        auto       inside = at;
         for (unsigned int d = 0; d < dim; ++d)
           {
             const double lower = grid.face_of_vertices(2 * d);
             const double upper = grid.face_of_vertices(2 * d + 1);
-            const double slack = 1e-9 * (upper - lower);
-            if (place[d] < lower && place[d] > lower - slack)
-              place[d] = lower;
-            if (place[d] > upper && place[d] < upper + slack)
-              place[d] = upper;
+            if (at[d] > lower - slack && at[d] < upper + slack)
+              inside[d] = std::clamp(at[d], lower, upper);
+            particle.get_properties()[offset_beyond + d] = at[d] - inside[d];
           }
-        particle.set_location(place);
+        particle.set_location(inside);
       }
     sorted.sort();
     if (sees_others)
@@ -149,6 +185,7 @@ namespace impm
     names.insert(names.end(), dim, "area");
     names.insert(names.end(), dim, "slip");
     names.insert(names.end(), {"contact_pressure", "gap"});
+    names.insert(names.end(), dim, "beyond");
     return names;
   }
 

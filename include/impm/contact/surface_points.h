@@ -25,9 +25,9 @@ namespace impm
                   const BackgroundGrid<dim> &grid);
 
     /** Sorts the points into cells, takes their addresses, and lets ranks know
-     * those near their cells. Those that
-     * round-off has carried through a face of the domain are put back.
-     * Collective. */
+     * those near their cells. Those that have gone through a face of the
+     * domain, which they are to press on, stay in the cell that they left, see
+     * place(). Collective. */
     void
     sort();
 
@@ -36,6 +36,18 @@ namespace impm
     size() const
     {
       return data.size();
+    }
+
+    /** Where a point is (m), be it beyond a face of the domain. */
+    template <typename Particle>
+    static dealii::Point<dim>
+    place(const Particle &particle)
+    {
+      auto          place  = particle.get_location();
+      const double *fields = particle.get_properties().data();
+      for (unsigned int d = 0; d < dim; ++d)
+        place[d] += fields[offset_beyond + d];
+      return place;
     }
 
     /** See offset_area. */
@@ -116,7 +128,8 @@ namespace impm
     static constexpr unsigned int offset_slip     = offset_area + dim;
     static constexpr unsigned int offset_pressure = offset_slip + dim;
     static constexpr unsigned int offset_gap      = offset_pressure + 1;
-    static constexpr unsigned int n_fields        = offset_gap + 1;
+    static constexpr unsigned int offset_beyond   = offset_gap + 1;
+    static constexpr unsigned int n_fields        = offset_beyond + dim;
 
     /** Names of the fields, one for each component. */
     static std::vector<std::string>

@@ -343,7 +343,7 @@ namespace impm
     unsigned int s            = 0;
     for (auto &particle : points.sorted.particles)
       {
-        const auto   x    = particle.get_location();
+        const auto   x    = points.place(particle);
         const double hoop = points.geometry == GeometryKind::axisymmetric ?
                               1 + ways[s][0] / x[0] :
                               1.;
@@ -353,7 +353,7 @@ namespace impm
                           (transpose(invert(deformations[s])) *
                            points.area(s)));
         points.set_meeting(s, meetings[s]);
-        particle.set_location(x + ways[s]);
+        particle.set_location(particle.get_location() + ways[s]);
         ++s;
       }
   }

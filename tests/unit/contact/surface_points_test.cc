@@ -221,8 +221,8 @@ TEST(SurfacePointsMpi, AreasFollowADeformation)
 }
 
 
-// A surface that lies on a face of the domain must not be lost.
-TEST(SurfacePointsMpi, WhatRoundOffCarriesThroughAFaceIsPutBack)
+// A surface that presses on a face of the domain is a little way beyond it.
+TEST(SurfacePointsMpi, PlacesBeyondAFace)
 {
   Model<2>   model(block_scene("plane strain"),
                  with_surface(2) + box("0.25, 0.25", "0.75, 0.75") +
@@ -235,21 +235,71 @@ TEST(SurfacePointsMpi, WhatRoundOffCarriesThroughAFaceIsPutBack)
       auto place = particle.get_location();
       n_moved += place[1] < 0.26 || place[0] > 0.74;
       if (place[1] < 0.26)
-        place[1] = 0.2 - 1e-10;
+        place[1] = 0.19;
       if (place[0] > 0.74)
-        place[0] = 1 + 1e-10;
+        place[0] = 1.01;
       particle.set_location(place);
     }
-  surfaces.sort();
-  EXPECT_EQ(Sums<2>(surfaces).number, before);
-  int n_on_faces = 0;
-  for (const auto &particle : surfaces.sorted.particles)
+  // However often they are sorted.
+  for (unsigned int i = 0; i < 2; ++i)
     {
-      const auto place = particle.get_location();
-      EXPECT_GE(place[1], 0.2);
-      EXPECT_LE(place[0], 1);
-      n_on_faces += place[1] == 0.2 || place[0] == 1;
+      surfaces.sort();
+      EXPECT_EQ(Sums<2>(surfaces).number, before);
+      int n_beyond = 0;
+      for (const auto &particle : surfaces.sorted.particles)
+        {
+          const auto inside = particle.get_location(),
+                     place  = surfaces.place(particle);
+          EXPECT_GE(inside[1], 0.2);
+          EXPECT_LE(inside[0], 1);
+          if (place[1] < 0.2 || place[0] > 1)
+            {
+              ++n_beyond;
+              EXPECT_TRUE(std::abs(place[1] - 0.19) < 1e-15 ||
+                          std::abs(place[0] - 1.01) < 1e-15);
+            }
+        }
+      EXPECT_EQ(Utilities::MPI::sum(n_beyond - n_moved, MPI_COMM_WORLD), 0);
     }
-  EXPECT_EQ(Utilities::MPI::sum(n_on_faces - n_moved, MPI_COMM_WORLD), 0);
   EXPECT_GE(Utilities::MPI::sum(n_moved, MPI_COMM_WORLD), 8);
+  // Those that come back are where they are.
+  for (auto &particle : surfaces.sorted.particles)
+    particle.set_location(particle.get_location() + Point<2>(-0.05, 0.05));
+  surfaces.sort();
+  for (const auto &particle : surfaces.sorted.particles)
+    EXPECT_EQ(surfaces.place(particle).distance(particle.get_location()), 0);
+}
+
+
+// Nothing lies outside of the domain, but what the body meets there.
+TEST(SurfacePointsMpi, OnFacesThatTheBodyMeets)
+{
+  const auto block =
+    box("0, 0", "0.5, 1") +
+    Overrides{"Contact/Pairs=side, foot", "Contact/foot/Kind=frictionless"};
+  expect_surface<2>("plane strain",
+                    block + Overrides{"Contact/foot/Bodies=block, bottom"},
+                    4 + 8,
+                    0.5 + 1,
+                    1e-9,
+                    Tensor<1, 2>({1, -0.5}));
+  expect_surface<2>("plane strain",
+                    block + Overrides{"Contact/foot/Bodies=block, left"},
+                    8 + 8,
+                    2);
+  expect_surface<2>("axisymmetric",
+                    block + Overrides{"Contact/foot/Bodies=block, top"},
+                    4 + 8,
+                    numbers::PI * (0.25 + 1),
+                    1e-9,
+                    numbers::PI * Tensor<1, 2>({1, 0.25}));
+  expect_surface<3>("3D",
+                    box("0, 0, 0", "0.5, 1, 1") +
+                      Overrides{"Contact/Pairs=side, foot",
+                                "Contact/foot/Kind=frictionless",
+                                "Contact/foot/Bodies=front, block"},
+                    4 * 8 + 8 * 8,
+                    0.5 + 1,
+                    1e-9,
+                    Tensor<1, 3>({1, 0, 0.5}));
 }

@@ -284,8 +284,7 @@ namespace impm
       advance_points(*problem, result, increments, scene.time, points);
       if (surfaces)
         problem->contact->advance(result.increment, *surfaces);
-      if (grid.keeps_motion)
-        policy.advance(grid, result, time, time + dt);
+      policy.advance(grid, result, time, time + dt);
       points.sort();
       if (surfaces)
         surfaces->sort();

@@ -77,11 +77,11 @@ namespace
   Overrides
   on_face()
   {
-    return block_above<dim>("0.25") + coulomb +
+    return block_above<dim>("0.2") + coulomb +
            Overrides{"Grid/Lower corner=" + in_space("0, 0.2", dim, "0"),
                      "Contact/foot/Bodies=block, bottom",
                      "Boundary conditions/bottom/Type=normal displacement",
-                     "Boundary conditions/bottom/Value=0.055*t",
+                     "Boundary conditions/bottom/Value=0.004*t",
                      "Boundary conditions/bottom/Moves the grid=true"};
   }
 
@@ -177,39 +177,29 @@ namespace
   };
 
   /** At the second of two random steps, for the first gives friction a bound
-   * and points that have slipped; or at the first one, with bounds from another
-   * increment. */
+   * and points that have slipped. */
   template <int dim>
   std::unique_ptr<Model<dim>>
-  prepare(const std::string &kind,
-          const Overrides   &overrides,
-          const bool         is_second = true)
+  prepare(const std::string &kind, const Overrides &overrides)
   {
     auto model = std::make_unique<Model<dim>>(block_scene(kind), overrides);
     model->begin_step();
     const Vector u = model->random_increment(1, size);
     EXPECT_TRUE(model->balance().evaluate(u).admissible);
-    if (is_second)
-      {
-        model->commit(u);
-        model->begin_step();
-      }
-    else
-      model->problem->contact->renew_friction(MPI_COMM_WORLD);
+    model->commit(u);
+    model->begin_step();
     return model;
   }
 
   template <int dim>
   States
-  check(const std::string &kind,
-        const Overrides   &overrides,
-        const bool         is_second = true)
+  check(const std::string &kind, const Overrides &overrides)
   {
     std::string all = kind;
     for (const auto &override : overrides)
       all += ", " + override;
     SCOPED_TRACE(all);
-    const auto   model   = prepare<dim>(kind, overrides, is_second);
+    const auto   model   = prepare<dim>(kind, overrides);
     auto        &balance = model->balance();
     const Vector u       = model->random_increment(2, size),
                  s       = model->random_direction(11),
@@ -286,14 +276,13 @@ TEST(ContactMpi, DerivativesOnARigidBall)
 }
 
 
+// Some of whose points are already beyond it.
 TEST(ContactMpi, DerivativesOnAFace)
 {
-  const auto states =
-    check<2>("plane strain", on_face<2>(), false) +
-    check<2>("axisymmetric", on_face<2>() + boxes + refined, false) +
-    check<3>("3D", on_face<3>() + boxes, false);
-  EXPECT_GT(states.open, 5u);
-  EXPECT_GT(states.closed, 5u);
+  (check<2>("plane strain", on_face<2>()) +
+   check<2>("axisymmetric", on_face<2>() + boxes + refined) +
+   check<3>("3D", on_face<3>() + boxes))
+    .expect_all();
 }
 
 

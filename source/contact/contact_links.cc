@@ -60,7 +60,7 @@ namespace impm
         return patches;
       const auto add = [&](const auto &particle) {
         const double *fields = particle.get_properties().data();
-        const auto    x      = particle.get_location();
+        const auto    x      = points.place(particle);
         const auto    area   = points.normal_of(fields + points.offset_edges);
         patches.push_back({x,
                            area / area.norm(),
@@ -125,7 +125,7 @@ namespace impm
     for (const auto &particle : points.sorted.particles)
       {
         const unsigned int body = points.body(s);
-        const Point<dim>   x    = particle.get_location() + points.beyond(s);
+        const auto         x    = points.place(particle);
         const auto         cell = particle.get_surrounding_cell();
         own.push_back(
           {particle.get_location(), cell, scene.bodies[body].layer});

@@ -19,9 +19,10 @@ namespace impm
     /** How far, in spacings, neighbours are looked at. */
     constexpr double radius = 2;
 
-    /** Beyond so many spacings from the next point, a surface has ended. */
+    /** So many of its spacings from every point, a surface has ended. Pieces
+     * may be longer than wide. */
     template <int dim>
-    constexpr double end_of_surface = dim == 2 ? 0.55 : 0.8;
+    constexpr double end_of_surface = dim == 2 ? 0.55 : 1;
 
     template <int dim>
     Tensor<1, dim>
@@ -82,8 +83,11 @@ namespace impm
                         });
 
     // The plane through what is near where it is met.
-    const double   spacing = patches[first].spacing;
     Tensor<1, dim> n       = patches[first].normal;
+    double         spacing = 0; // the largest, since pieces may be small
+    for (const auto i : near)
+      if (patches[i].normal * n > alike)
+        spacing = std::max(spacing, patches[i].spacing);
     std::vector<std::pair<unsigned int, double>> weights;
     const auto                                   weigh = [&]() {
       weights.clear();
@@ -108,12 +112,12 @@ namespace impm
     for (const auto &[i, weight] : weights)
       {
         const auto offset = along(places[i] - place, n);
-        nearest           = std::min(nearest, offset.norm());
+        nearest = std::min(nearest, offset.norm() / patches[i].spacing);
         sum += weight;
         middle += weight * offset;
         moment += weight * outer_product(offset, offset);
       }
-    if (nearest > end_of_surface<dim> * spacing)
+    if (nearest > end_of_surface<dim>)
       return std::nullopt;
 
     // w (1 + b . offset), whose middle is at the place; where that takes

@@ -57,17 +57,55 @@ namespace impm
       return edges;
     }
 
-    /** The middle of a piece lies on a chord of a curved surface, off it by
-     * more than layers that touch give way. */
+    /** Moves the middle of a piece, which lies on a chord of a curved surface,
+     * off it by more than layers that touch give way. */
     template <int dim>
-    Point<dim>
-    onto_surface(const SurfacePiece<dim> &piece, const Shape<dim> &shape)
+    void
+    put_onto_surface(const Shape<dim> &shape, SurfacePiece<dim> &piece)
     {
       const auto   proximity = shape.proximity(piece.position);
       const double size      = std::pow(piece.area.norm(), 1. / (dim - 1));
-      return std::abs(proximity.distance) < 0.25 * size ?
-               piece.position - proximity.distance * proximity.normal :
-               piece.position;
+      if (std::abs(proximity.distance) < 0.25 * size)
+        piece.position -= proximity.distance * proximity.normal;
+    }
+
+    /** The surface of a body in a cell, and that on faces of the domain, which
+     * the body meets, at the cell. */
+    template <int dim, typename Cell>
+    std::vector<SurfacePiece<dim>>
+    surface_in_cell(const ContactSpec   &contact,
+                    const BodySpec<dim> &body,
+                    const unsigned int   b,
+                    const Cell          &cell)
+    {
+      Tensor<1, dim> extents;
+      for (unsigned int d = 0; d < dim; ++d)
+        extents[d] = cell_extent(cell, d);
+      auto pieces = surface_in_box<dim>(*body.shape,
+                                        cell->vertex(0),
+                                        extents,
+                                        body.points_per_cell);
+      for (auto &piece : pieces)
+        put_onto_surface(*body.shape, piece);
+      for (const auto &pair : contact.pairs)
+        if (pair.body == b && pair.partner_kind == PartnerKind::face &&
+            cell->at_boundary(pair.partner))
+          {
+            // The box outside, of which the plane of the face is a part.
+            const unsigned int d     = pair.partner / 2;
+            const bool         upper = pair.partner % 2 == 1;
+            Point<dim>         lower = cell->vertex(0);
+            const double       plane = lower[d] + (upper ? extents[d] : 0);
+            lower[d] += (upper ? 1 : -1) * extents[d];
+            for (auto piece : surface_in_box<dim>(
+                   *body.shape, lower, extents, body.points_per_cell))
+              if (std::abs(piece.position[d] - plane) < 1e-6 * extents[d])
+                {
+                  piece.position[d] = plane;
+                  pieces.push_back(piece);
+                }
+          }
+      return pieces;
     }
 
     /** The pair by which a point on the surface of a body is bonded from the
@@ -117,43 +155,23 @@ namespace impm
       {
         seeds.clear();
         edges.clear();
-        const auto add = [&](const auto           &cell,
-                             const Point<dim>     &from,
-                             const Tensor<1, dim> &extents) {
-          for (const auto &piece : surface_in_box<dim>(
-                 *bodies[b].shape, from, extents, bodies[b].points_per_cell))
-            {
-              Seed<dim> seed{};
-              seed.position = onto_surface(piece, *bodies[b].shape);
-              for (unsigned int d = 0; d < dim; ++d)
-                seed.unit_position[d] =
-                  (seed.position[d] - cell->vertex(0)[d]) / extents[d];
-              seed.cell   = cell;
-              seed.domain = extents;
-              seeds.push_back(seed);
-              edges.push_back(edges_of<dim>(piece.area));
-            }
-        };
         for (const auto &cell : grid.triangulation.active_cell_iterators())
           if (cell->is_locally_owned())
-            {
-              const Point<dim> lower = cell->vertex(0);
-              Tensor<1, dim>   extents;
-              for (unsigned int d = 0; d < dim; ++d)
-                extents[d] = cell_extent(cell, d);
-              add(cell, lower, extents);
-              // What lies on a face of the domain is in what is beyond.
-              for (const auto &pair : contact.pairs)
-                if (pair.body == b && pair.partner_kind == PartnerKind::face &&
-                    cell->face(pair.partner)->at_boundary())
+            for (const auto &piece :
+                 surface_in_cell<dim>(contact, bodies[b], b, cell))
+              {
+                Seed<dim> seed{};
+                seed.position = piece.position;
+                seed.cell     = cell;
+                for (unsigned int d = 0; d < dim; ++d)
                   {
-                    Point<dim> beyond = lower;
-                    beyond[pair.partner / 2] +=
-                      (pair.partner % 2 == 0 ? -1 : 1) *
-                      extents[pair.partner / 2];
-                    add(cell, beyond, extents);
+                    seed.domain[d] = cell_extent(cell, d);
+                    seed.unit_position[d] =
+                      (seed.position[d] - cell->vertex(0)[d]) / seed.domain[d];
                   }
-            }
+                seeds.push_back(seed);
+                edges.push_back(edges_of<dim>(piece.area));
+              }
         unsigned int next = 0;
         sorted.insert(seeds, [&](const Seed<dim> &seed, double *fields) {
           std::fill_n(fields, n_fields, 0.);

@@ -43,6 +43,19 @@ namespace impm
       return data.size();
     }
 
+    /** Where a point is (m), be it beyond a face of the domain on which it
+     * presses. */
+    template <typename Particle>
+    static dealii::Point<dim>
+    place(const Particle &particle)
+    {
+      auto          place  = particle.get_location();
+      const double *fields = particle.get_properties().data();
+      for (unsigned int d = 0; d < dim; ++d)
+        place[d] += fields[offset_beyond + d];
+      return place;
+    }
+
     /** See offset_edges. */
     const double *
     fields(const unsigned int point) const
@@ -104,14 +117,6 @@ namespace impm
     pair(const unsigned int point) const
     {
       return static_cast<int>(data[point][1]);
-    }
-
-    /** From where the point is kept to where it is, if that is beyond a face of
-     * the domain, on which it is pressed (m). */
-    dealii::Tensor<1, dim>
-    beyond(const unsigned int point) const
-    {
-      return vector(point, offset_beyond);
     }
 
     /** What a point has met. */

@@ -182,7 +182,10 @@ namespace impm
       section.add("On", reaction.on, "A face of the domain or a rigid body.");
       std::vector<std::string> carriers;
       for (const auto &face : faces)
-        if (std::count(face.constrained.begin(), face.constrained.end(), true))
+        if (std::count(face.constrained.begin(),
+                       face.constrained.end(),
+                       true) ||
+            !face.released_layers.empty())
           carriers.push_back(face.name);
       for (const auto &body : names_of_bodies(bodies, true))
         carriers.push_back(body);

@@ -4,6 +4,8 @@
 #include <deal.II/base/conditional_ostream.h>
 #include <deal.II/base/timer.h>
 
+#include <impm/balance/terms/contact.h>
+#include <impm/contact/surface_points.h>
 #include <impm/footprints/transfer.h>
 #include <impm/grid/grid_policy.h>
 #include <impm/run/solve_step.h>
@@ -178,6 +180,10 @@ namespace impm
                scene.loads.tractions,
                grid)
       , rigid(scene.bodies, scene.geometry, grid)
+      , surfaces(scene.contact.pairs.empty() ?
+                   nullptr :
+                   std::make_unique<SurfacePoints<dim>>(
+                     scene.contact, scene.bodies, scene.geometry, grid))
       , policy(scene.faces)
       , integrator(make_time_integrator(scene.time))
       , builder(scene.grid)
@@ -276,9 +282,12 @@ namespace impm
       std::vector<dealii::Tensor<1, dim>> increments;
       problem->footprints.interpolate(result.increment, increments);
       advance_points(*problem, result, increments, scene.time, points);
-      if (grid.keeps_motion)
-        policy.advance(grid, result, time, time + dt);
+      if (surfaces)
+        problem->contact->advance(result.increment, *surfaces);
+      policy.advance(grid, result, time, time + dt);
       points.sort();
+      if (surfaces)
+        surfaces->sort();
       time += dt;
     }
 
@@ -288,8 +297,16 @@ namespace impm
       problem.reset();
       if (!grid.is_moved())
         builder.remember(points);
-      problem = std::make_unique<StepProblem<dim>>(
-        scene, grid, points, rigid, *integrator, builder, counts, time, dt);
+      problem = std::make_unique<StepProblem<dim>>(scene,
+                                                   grid,
+                                                   points,
+                                                   rigid,
+                                                   *integrator,
+                                                   builder,
+                                                   counts,
+                                                   time,
+                                                   dt,
+                                                   surfaces.get());
     }
 
     /** Solves for one step, as Simulation does, and leaves it there. */
@@ -312,18 +329,19 @@ namespace impm
       return problem->constraints;
     }
 
-    const Scene<dim>                  scene;
-    dealii::ConditionalOStream        silence;
-    dealii::TimerOutput               timer;
-    BackgroundGrid<dim>               grid;
-    MaterialPoints<dim>               points;
-    RigidBodies<dim>                  rigid;
-    GridPolicy<dim>                   policy;
-    std::unique_ptr<TimeIntegrator>   integrator;
-    FootprintBuilder<dim>             builder;
-    WorkCounts                        counts;
-    std::unique_ptr<StepProblem<dim>> problem; ///< after begin_step()
-    double                            time = 0, dt = scene.time.step;
+    const Scene<dim>                          scene;
+    dealii::ConditionalOStream                silence;
+    dealii::TimerOutput                       timer;
+    BackgroundGrid<dim>                       grid;
+    MaterialPoints<dim>                       points;
+    RigidBodies<dim>                          rigid;
+    const std::unique_ptr<SurfacePoints<dim>> surfaces; ///< if any meet others
+    GridPolicy<dim>                           policy;
+    std::unique_ptr<TimeIntegrator>           integrator;
+    FootprintBuilder<dim>                     builder;
+    WorkCounts                                counts;
+    std::unique_ptr<StepProblem<dim>>         problem; ///< after begin_step()
+    double                                    time = 0, dt = scene.time.step;
   };
 } // namespace impm
 

@@ -1,0 +1,537 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "run_scene.h"
+#include "scene_fixture.h"
+
+using namespace dealii;
+using namespace impm;
+
+// Bodies that meet by their surfaces, over many steps.
+namespace
+{
+  std::string
+  directory(const std::string &name)
+  {
+    const int id =
+      Utilities::MPI::broadcast(MPI_COMM_WORLD, static_cast<int>(getpid()));
+    return testing::TempDir() + "impm_contact_" + name + std::to_string(id);
+  }
+
+  template <int dim>
+  Columns
+  run_scene(const std::string &kind, const Overrides &overrides)
+  {
+    return run(scene_from<dim>(block_scene(kind), overrides),
+               MPI_COMM_WORLD,
+               directory(""));
+  }
+
+  double
+  mean(const std::vector<double> &values,
+       const double               from = 0,
+       const double               to   = 1)
+  {
+    const auto begin = values.begin() + std::lround(from * values.size()),
+               end   = values.begin() + std::lround(to * values.size());
+    return std::accumulate(begin, end, 0.) / (end - begin);
+  }
+
+  const double g = 10, angle = 0.3; ///< of the incline
+
+  /** A block of 1 x 0.5 slides down a rigid incline, along x. */
+  template <int dim>
+  Overrides
+  incline(const std::string &friction, const std::string &stiffness)
+  {
+    const bool solid = dim == 3;
+    const auto at    = [&](const std::string &plane, const std::string &z) {
+      return solid ? plane + ", " + z : plane;
+    };
+    return Overrides{"Geometry/Shapes=box, ground",
+                     "Geometry/box/Lower corner=" + at("0.5, 0.25", "0.25"),
+                     "Geometry/box/Upper corner=" + at("1.5, 0.75", "0.75"),
+                     "Geometry/ground/Lower corner=" + at("-10, -1", "-1"),
+                     "Geometry/ground/Upper corner=" + at("20, 0.25", "2"),
+                     "Grid/Method=GIMP",
+                     "Grid/Upper corner=" + at("4, 1", "1"),
+                     "Grid/Cells=" + at("16, 4", "4"),
+                     "Materials/rubber/Law=neo-Hookean",
+                     "Materials/rubber/Density=1000",
+                     "Materials/rubber/Young's modulus=" + stiffness,
+                     "Bodies/Names=block, tool",
+                     "Bodies/tool/Kind=rigid",
+                     "Bodies/tool/Contact=surface",
+                     "Bodies/tool/Shape=ground",
+                     "Contact/Pairs=foot",
+                     "Contact/foot/Bodies=block, tool",
+                     "Loads/Body force=" + std::to_string(g * std::sin(angle)) +
+                       "; " + std::to_string(-g * std::cos(angle)) +
+                       (solid ? "; 0" : ""),
+                     "Time/Integrator=Newmark",
+                     "Time/Time step=0.01",
+                     "Solver/Newton tolerance=1e-9",
+                     "Output/Probes=way",
+                     "Output/way/Kind=mean",
+                     "Output/way/Field=displacement",
+                     "Output/way/Component=0",
+                     "Output/Reactions=fx, fy",
+                     "Output/fx/On=tool",
+                     "Output/fx/Direction=" + at("1, 0", "0"),
+                     "Output/fy/On=tool",
+                     "Output/fy/Direction=" + at("0, 1", "0")} +
+           (friction.empty() ?
+              Overrides{"Contact/foot/Kind=frictionless"} :
+              Overrides{"Contact/foot/Kind=Coulomb",
+                        "Contact/foot/Friction coefficient=" + friction});
+  }
+
+  constexpr double mass = 500; ///< of the block, for each metre of thickness
+
+  double
+  way_down(const double friction, const double time)
+  {
+    return g * (std::sin(angle) - friction * std::cos(angle)) * time * time / 2;
+  }
+} // namespace
+
+
+TEST(ContactRuns, ABlockSlidesWithoutFriction)
+{
+  for (const std::string method : {"GIMP", "MPM"})
+    {
+      const auto columns = run_scene<2>("plane strain",
+                                        incline<2>("", "1e6") +
+                                          Overrides{"Grid/Method=" + method});
+      EXPECT_NEAR(columns.at("way").back() / way_down(0, 1), 1, 1e-3);
+      for (const double force : columns.at("fx"))
+        EXPECT_NEAR(force, 0, 1e-9 * mass * g);
+      // It hops a little.
+      EXPECT_NEAR(mean(columns.at("fy")) / (-mass * g * std::cos(angle)),
+                  1,
+                  0.01);
+    }
+}
+
+
+TEST(ContactRuns, ABlockSlidesAgainstFriction)
+{
+  const auto check = [](const auto &columns, const double end, const double m) {
+    EXPECT_NEAR(columns.at("way").back() / way_down(0.1, end), 1, 0.01);
+    const auto &normal   = columns.at("foot_normal_force");
+    const auto &friction = columns.at("foot_friction_force");
+    // It hops a little, and that does not cancel in a short time.
+    EXPECT_NEAR(mean(normal) / (m * g * std::cos(angle)), 1, 0.05);
+    for (unsigned int i = 0; i < normal.size(); ++i)
+      {
+        EXPECT_NEAR(columns.at("fy")[i], -normal[i], 1e-9 * m * g);
+        // in space also across, where the block swells
+        EXPECT_NEAR(columns.at("fx")[i],
+                    friction[i],
+                    1e-3 * friction[i] + 1e-9);
+        // Not from the first moment on: it has to slip for that.
+        if (i > 5)
+          EXPECT_NEAR(friction[i], 0.1 * normal[i], 1e-4 * m * g);
+      }
+  };
+  check(run_scene<2>("plane strain", incline<2>("0.1", "1e8")), 1, mass);
+  check(run_scene<3>("3D",
+                     incline<3>("0.1", "1e8") +
+                       Overrides{"Time/End time=0.15"}),
+        0.15,
+        mass / 2);
+}
+
+
+// At which the body stands from the start, or to which it comes. As long as it
+// presses, its surface is a little way through the face.
+TEST(ContactRuns, AFaceIsLikeARigidBody)
+{
+  // Boxes are cut by the face, but reach a little into a rigid body.
+  for (const std::string method : {"MPM", "GIMP"})
+    for (const std::string height : {"0.25", "0.125"})
+      {
+        const std::string friction = height == "0.25" ? "0.1" : "";
+        const auto        block =
+          incline<2>(friction, "1e6") +
+          Overrides{"Time/End time=0.3", "Grid/Method=" + method};
+        const auto ground = run_scene<2>(
+          "plane strain",
+          block + Overrides{"Geometry/ground/Upper corner=20, " + height,
+                            "Grid/Lower corner=0, -0.25",
+                            "Grid/Cells=16, " +
+                              std::string(height == "0.25" ? "5" : "10")});
+        auto on_face = block;
+        // Without the rigid body.
+        on_face.erase(std::remove_if(on_face.begin(),
+                                     on_face.end(),
+                                     [](const auto &override) {
+                                       return override.find("tool") !=
+                                              std::string::npos;
+                                     }),
+                      on_face.end());
+        const auto face = run_scene<2>(
+          "plane strain",
+          on_face + Overrides{"Grid/Lower corner=0, " + height,
+                              "Grid/Cells=16, " +
+                                std::string(height == "0.25" ? "3" : "7"),
+                              "Contact/foot/Bodies=block, bottom",
+                              // No matter for a body that has let it go.
+                              std::string("Boundary conditions/bottom/Type=") +
+                                (method == "MPM" ? "free" : "slip"),
+                              "Output/fx/On=bottom",
+                              "Output/fy/On=bottom"});
+        for (const std::string name : {"way",
+                                       "fx",
+                                       "fy",
+                                       "foot_normal_force",
+                                       "foot_area",
+                                       "strain_energy"})
+          {
+            ASSERT_EQ(face.at(name).size(), 30u);
+            const auto &expected = ground.at(name);
+            double      largest  = 1e-9;
+            for (const double value : expected)
+              largest = std::max(largest, std::abs(value));
+            for (unsigned int i = 0; i < 30; ++i)
+              EXPECT_NEAR(face.at(name)[i], expected[i], 0.02 * largest)
+                << name << ", step " << i;
+          }
+        const auto &force = face.at("foot_normal_force");
+        EXPECT_GT(*std::max_element(force.begin(), force.end()), mass * g / 2);
+      }
+}
+
+
+// The slab is as high as two cells: the boxes of the block reach into the upper
+// one, whose nodes the bottom must not hold.
+TEST(ContactRuns, ABlockSlidesOnAnother)
+{
+  for (const double friction : {0., 0.1})
+    {
+      auto overrides = incline<2>(friction > 0 ? "0.1" : "", "1e6");
+      overrides.erase(std::remove_if(overrides.begin(),
+                                     overrides.end(),
+                                     [](const auto &override) {
+                                       return override.find("tool") !=
+                                                std::string::npos ||
+                                              override.find("Output/") == 0;
+                                     }),
+                      overrides.end());
+      const auto columns =
+        run_scene<2>("plane strain",
+                     overrides +
+                       Overrides{"Geometry/ground/Lower corner=0, 0",
+                                 "Geometry/ground/Upper corner=4, 0.25",
+                                 "Grid/Cells=32, 8",
+                                 "Bodies/Names=block, slab",
+                                 "Bodies/slab/Shape=ground",
+                                 "Bodies/slab/Material=rubber",
+                                 "Contact/foot/Bodies=block, slab",
+                                 "Boundary conditions/bottom/Type=fixed",
+                                 "Time/End time=0.5",
+                                 "Output/Probes=way",
+                                 "Output/way/Kind=mean",
+                                 "Output/way/Field=displacement",
+                                 "Output/way/Component=0",
+                                 "Output/way/Bodies=block"});
+      const auto &normal = columns.at("foot_normal_force"),
+                 &along  = columns.at("foot_friction_force");
+      const double way   = columns.at("way").back() / way_down(friction, 0.5);
+      EXPECT_NEAR(way, 1, friction > 0 ? 0.03 : 1e-3);
+      EXPECT_NEAR(mean(normal) / (mass * g * std::cos(angle)), 1, 0.05);
+      for (unsigned int i = 5; i < normal.size(); ++i)
+        EXPECT_NEAR(along[i], friction * normal[i], 1e-3 * mass * g) << i;
+    }
+}
+
+
+// It shakes, since nothing damps it, but does not go down.
+TEST(ContactRuns, ABlockSticks)
+{
+  const auto  columns = run_scene<2>("plane strain", incline<2>("0.5", "1e6"));
+  const auto &way     = columns.at("way");
+  EXPECT_GT(mean(way, 0.25, 0.5), 0);
+  EXPECT_LT(mean(way), 0.003);
+  EXPECT_NEAR(mean(way, 0.75, 1), mean(way, 0.25, 0.5), 1e-4);
+  for (unsigned int i = 0; i < way.size(); ++i)
+    EXPECT_LT(columns.at("foot_friction_force")[i],
+              0.5 * columns.at("foot_normal_force")[i] + 1e-3 * mass * g);
+}
+
+
+namespace
+{
+  /** A column under a plate, or a face, that comes down, first by a gap. */
+  template <int dim>
+  void
+  check_press(const std::string &kind,
+              const std::string &method,
+              const bool         is_face)
+  {
+    SCOPED_TRACE(kind + ", " + method + (is_face ? ", face" : ""));
+    const bool solid = dim == 3;
+    const auto at    = [&](const std::string &plane, const std::string &z) {
+      return solid ? plane + ", " + z : plane;
+    };
+    const Overrides plate = {
+      "Geometry/Shapes=box, plate",
+      "Geometry/plate/Lower corner=" + at("-1, 1.0001", "-1"),
+      "Geometry/plate/Upper corner=" + at("2, 3", "2"),
+      "Grid/Upper corner=" + at("1.25, 1.25", "1.25"),
+      "Grid/Cells=" + at("5, 5", "5"),
+      "Bodies/Names=block, tool",
+      "Bodies/tool/Kind=rigid",
+      "Bodies/tool/Contact=surface",
+      "Bodies/tool/Shape=plate",
+      std::string("Bodies/tool/Displacement=0; -0.0003*t") +
+        (solid ? "; 0" : ""),
+      "Contact/lid/Bodies=tool, block",
+      "Output/load/On=tool"};
+    const Overrides face = {"Grid/Upper corner=" + at("1.25, 1.0001", "1.25"),
+                            "Grid/Cells=" + at("5, 4", "5"),
+                            "Boundary conditions/top/Type=normal displacement",
+                            "Boundary conditions/top/Value=-0.0003*t",
+                            "Boundary conditions/top/Moves the grid=true",
+                            "Contact/lid/Bodies=top, block",
+                            "Output/load/On=top"};
+    const auto      columns =
+      run_scene<dim>(kind,
+                     (is_face ? face : plate) +
+                       Overrides{"Grid/Method=" + method,
+                                 "Materials/rubber/Law=linear elastic",
+                                 "Materials/rubber/Poisson's ratio=0",
+                                 "Contact/Pairs=lid",
+                                 "Contact/lid/Kind=frictionless",
+                                 "Boundary conditions/bottom/Type=slip",
+                                 "Boundary conditions/left/Type=slip",
+                                 "Time/Time step=0.25",
+                                 "Output/Reactions=load",
+                                 "Output/load/Direction=" + at("0, 1", "0")} +
+                       (solid ?
+                          Overrides{"Boundary conditions/back/Type=slip"} :
+                          Overrides{}));
+    const double area  = kind == "axisymmetric" ? numbers::PI : 1;
+    const double layer = 0.05 * 0.25;
+    const auto  &load  = columns.at("load");
+    ASSERT_EQ(load.size(), 4u);
+    for (unsigned int i = 0; i < 4; ++i)
+      {
+        const double closed = std::max(0., 0.000075 * (i + 1) - 0.0001);
+        EXPECT_NEAR(load[i], area * closed / (1 + layer), 1e-3 * area * closed);
+        EXPECT_NEAR(columns.at("lid_normal_force")[i], load[i], 1e-12);
+      }
+    EXPECT_EQ(load[0], 0);
+    EXPECT_NEAR(columns.at("lid_area").back(), area, 1e-9);
+  }
+} // namespace
+
+
+TEST(ContactRuns, APlatePressesAColumn)
+{
+  for (const std::string method : {"MPM", "GIMP"})
+    {
+      for (const bool is_face : {false, true})
+        {
+          check_press<2>("plane strain", method, is_face);
+          check_press<2>("axisymmetric", method, is_face);
+          check_press<3>("3D", method, is_face);
+        }
+    }
+}
+
+
+namespace
+{
+  /** A rod of length 1 hits another one that is at rest, after 0.2. */
+  const Overrides rods = {"Geometry/Shapes=box, other",
+                          "Geometry/box/Lower corner=0.5, 0",
+                          "Geometry/box/Upper corner=1.5, 0.05",
+                          "Geometry/other/Lower corner=1.502, 0",
+                          "Geometry/other/Upper corner=2.502, 0.05",
+                          "Grid/Method=GIMP",
+                          "Grid/Upper corner=4, 0.05",
+                          "Grid/Cells=160, 2",
+                          "Materials/rubber/Law=neo-Hookean",
+                          "Materials/rubber/Poisson's ratio=0",
+                          "Bodies/Names=block, second",
+                          "Bodies/block/Velocity=0.01; 0",
+                          "Bodies/second/Shape=other",
+                          "Bodies/second/Material=rubber",
+                          "Contact/Pairs=ends",
+                          "Contact/ends/Bodies=block, second",
+                          "Contact/ends/Kind=frictionless",
+                          "Boundary conditions/top/Type=slip",
+                          "Boundary conditions/bottom/Type=slip",
+                          "Time/Integrator=Newmark",
+                          "Time/End time=2.5",
+                          "Time/Time step=0.0125",
+                          "Solver/Newton tolerance=1e-9",
+                          "Output/Probes=a, b",
+                          "Output/a/Kind=mean",
+                          "Output/a/Field=velocity",
+                          "Output/a/Bodies=block",
+                          "Output/b/Kind=mean",
+                          "Output/b/Field=velocity",
+                          "Output/b/Bodies=second"};
+} // namespace
+
+
+// A wave goes to the end of each rod and back, and then they part.
+TEST(ContactRuns, TwoRodsExchangeTheirVelocities)
+{
+  const auto  columns = run_scene<2>("plane strain", rods);
+  const auto &force   = columns.at("ends_normal_force");
+  const auto &time    = columns.at("time");
+  EXPECT_NEAR(columns.at("a").back(), 0, 0.03 * 0.01);
+  EXPECT_NEAR(columns.at("b").back(), 0.01, 0.03 * 0.01);
+  double impulse = 0, begin = 0, end = 0;
+  for (unsigned int i = 0; i < time.size(); ++i)
+    {
+      impulse += 0.0125 * force[i];
+      // of the plateau: rho c v / 2
+      if (force[i] > 0.5 * 0.05 * 0.005)
+        {
+          begin = begin > 0 ? begin : time[i];
+          end   = time[i];
+        }
+      EXPECT_NEAR(columns.at("momentum_x")[i], 0.0005, 1e-9);
+    }
+  EXPECT_NEAR(begin, 0.2, 0.1);
+  EXPECT_NEAR(end, 2.2, 0.1);
+  EXPECT_NEAR(impulse, 0.0005, 0.03 * 0.0005);
+  EXPECT_EQ(force.back(), 0);
+}
+
+
+// The grid is fine where the rigid body is near.
+TEST(ContactRuns, OnAGridThatAdapts)
+{
+  const auto columns =
+    run_scene<2>("plane strain",
+                 incline<2>("0.1", "1e7") +
+                   Overrides{"Grid/Adaptation/Criteria=ground",
+                             "Grid/Adaptation/ground/Kind=distance",
+                             "Grid/Adaptation/ground/Of=tool",
+                             "Grid/Adaptation/ground/Distance=0.1",
+                             "Grid/Adaptation/ground/Level=1",
+                             "Grid/Adaptation/Highest level=1"});
+  EXPECT_NEAR(columns.at("way").back() / way_down(0.1, 1), 1, 0.01);
+  const auto coarse =
+    run_scene<2>("plane strain",
+                 incline<2>("0.1", "1e7") + Overrides{"Time/End time=0.01"});
+  EXPECT_GT(*std::min_element(columns.at("dofs").begin(),
+                              columns.at("dofs").end()),
+            1.3 * coarse.at("dofs")[0]);
+}
+
+
+namespace
+{
+  /** The same on the first ranks as on the first alone. */
+  template <int dim>
+  void
+  compare(const std::string &kind, const Overrides &overrides)
+  {
+    const auto         scene = scene_from<dim>(block_scene(kind), overrides);
+    const unsigned int rank  = Utilities::MPI::this_mpi_process(MPI_COMM_WORLD);
+    Columns            alone;
+    for (const unsigned int n : {1, 2, 3})
+      {
+        if (n > Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD))
+          break;
+        SCOPED_TRACE(n);
+        MPI_Comm communicator;
+        MPI_Comm_split(MPI_COMM_WORLD,
+                       rank < n ? 0 : MPI_UNDEFINED,
+                       rank,
+                       &communicator);
+        const auto name = directory(std::to_string(n));
+        if (rank < n)
+          {
+            Simulation<dim>(scene, CommandLine::Verbosity::quiet, communicator)
+              .run(name, "test", "");
+            MPI_Comm_free(&communicator);
+          }
+        MPI_Barrier(MPI_COMM_WORLD);
+        const auto columns = read_history(name);
+        if (n == 1)
+          alone = columns;
+        else
+          expect_near(alone, columns);
+        MPI_Barrier(MPI_COMM_WORLD);
+        std::error_code ignored;
+        std::filesystem::remove_all(name, ignored);
+        MPI_Barrier(MPI_COMM_WORLD);
+      }
+  }
+
+  const Overrides meet_soon = {"Geometry/other/Lower corner=1.5005, 0",
+                               "Geometry/other/Upper corner=2.5005, 0.05",
+                               "Time/End time=0.25"};
+} // namespace
+
+
+TEST(ContactRunsMpi, OnAnyNumberOfRanks)
+{
+  compare<2>("plane strain",
+             incline<2>("0.1", "1e6") + Overrides{"Time/End time=0.2"});
+  compare<2>("plane strain", rods + meet_soon);
+}
+
+
+namespace
+{
+  /** A run of so many steps, then to the end, as one. */
+  void
+  expect_restart(const Overrides &overrides)
+  {
+    const auto run_to = [&](const unsigned int n_steps,
+                            const std::string &name,
+                            const bool         restart) {
+      Simulation<2>(
+        scene_from<2>(block_scene("plane strain"),
+                      overrides +
+                        Overrides{"Output/Checkpoints/Interval in steps=5",
+                                  "Time/Largest number of steps=" +
+                                    std::to_string(n_steps)}),
+        CommandLine::Verbosity::quiet,
+        MPI_COMM_WORLD)
+        .run(name, "test", "", {}, restart);
+      MPI_Barrier(MPI_COMM_WORLD);
+      return read_history(name);
+    };
+    const auto clear = [](const std::string &name) {
+      MPI_Barrier(MPI_COMM_WORLD);
+      std::error_code ignored;
+      std::filesystem::remove_all(name, ignored);
+      MPI_Barrier(MPI_COMM_WORLD);
+    };
+    const auto whole = run_to(20, directory("whole"), false);
+    // in contact, and in friction if there is any
+    EXPECT_GT(whole.at(whole.count("fx") > 0 ? "foot_normal_force" :
+                                               "ends_normal_force")[9],
+              0);
+    run_to(10, directory("parts"), false);
+    const auto parts = run_to(20, directory("parts"), true);
+    EXPECT_EQ(whole.at("step").size(), 20u);
+    for (const auto &[name, values] : whole)
+      if (name != "wall_seconds")
+        {
+          EXPECT_EQ(parts.at(name), values) << name;
+        }
+    clear(directory("whole"));
+    clear(directory("parts"));
+  }
+} // namespace
+
+
+TEST(ContactRunsMpi, RestartInContact)
+{
+  expect_restart(incline<2>("0.1", "1e6"));
+  expect_restart(incline<2>("0.5", "1e6"));
+  expect_restart(rods + meet_soon);
+}

@@ -284,7 +284,8 @@ namespace impm
       advance_points(*problem, result, increments, scene.time, points);
       if (surfaces)
         problem->contact->advance(result.increment, *surfaces);
-      policy.advance(grid, result, time, time + dt);
+      if (grid.keeps_motion || surfaces)
+        policy.advance(grid, result, time, time + dt);
       points.sort();
       if (surfaces)
         surfaces->sort();

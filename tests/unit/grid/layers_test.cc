@@ -94,7 +94,7 @@ namespace
                            "Boundary conditions/front/Type=slip"} :
                  Overrides{}));
     const double nu = 0.3, M = (1 - nu) / ((1 + nu) * (1 - 2 * nu));
-    const double thickness = 0.05 * 0.25;
+    const double thickness = ContactSpec().thickness * 0.25;
     const double stress    = strain * M / (1 + thickness);
     EXPECT_NEAR(columns.at("lo")[0] / -stress, 1, 1e-5);
     EXPECT_NEAR(columns.at("hi")[0] / -stress, 1, 1e-5);

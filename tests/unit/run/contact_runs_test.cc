@@ -315,7 +315,7 @@ namespace
                           Overrides{"Boundary conditions/back/Type=slip"} :
                           Overrides{}));
     const double area  = kind == "axisymmetric" ? numbers::PI : 1;
-    const double layer = 0.05 * 0.25;
+    const double layer = ContactSpec().thickness * 0.25;
     const auto  &load  = columns.at("load");
     ASSERT_EQ(load.size(), 4u);
     for (unsigned int i = 0; i < 4; ++i)

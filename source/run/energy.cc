@@ -56,7 +56,10 @@ namespace impm
     text << "the step gains " << 100 * gain
          << " % of the largest energy by itself: the time integrator does so "
             "where bodies turn far in a step; the energy-momentum method does "
-            "not";
+            "not"
+         << (problem->contact ? ". So do surfaces that part within a step: "
+                                "backward Euler (theta = 1) does not" :
+                                "");
     return text.str();
   }
 

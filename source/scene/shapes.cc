@@ -104,11 +104,24 @@ namespace impm
                              "', allowed are coordinates greater than '" +
                              prm.get("Lower corner") + "' in each direction");
 
-      // The tolerance is one per direction: a box that is to reach "to
-      // infinity" in one of them stays sharp in the others.
       const BoundingBox<dim> box({lower, upper});
-      return {[box](const Point<dim> &point) {
-                return box.point_inside(point, tolerance);
+      // One per face: a box that is to reach "to infinity" stays sharp at its
+      // other ends.
+      const auto margin = [box](const unsigned int d, const double face) {
+        const double length = box.side_length(d);
+        return tolerance * (length > 1e30 ? std::abs(face) : length);
+      };
+      Point<dim> first, last;
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          first[d] = lower[d] - margin(d, lower[d]);
+          last[d]  = upper[d] + margin(d, upper[d]);
+        }
+      return {[first, last](const Point<dim> &point) {
+                for (unsigned int d = 0; d < dim; ++d)
+                  if (point[d] < first[d] || point[d] > last[d])
+                    return false;
+                return true;
               },
               [lower, upper](const Point<dim> &point) {
                 return proximity_to_box(point, lower, upper);
@@ -204,6 +217,51 @@ namespace impm
 
     template <int dim>
     Shape<dim>
+    create_intersection(Handler &prm,
+                        const Constants &,
+                        const NamedShapes<dim> &others)
+    {
+      const auto                      shapes = get_shapes(prm, others, 2);
+      std::optional<BoundingBox<dim>> box;
+      for (const auto &shape : shapes)
+        if (const auto &next = shape->bounding_box; box && next)
+          {
+            auto corners = box->get_boundary_points();
+            for (unsigned int d = 0; d < dim; ++d)
+              {
+                corners.first[d] =
+                  std::max(corners.first[d], next->lower_bound(d));
+                corners.second[d] =
+                  std::min(corners.second[d], next->upper_bound(d));
+                if (!(corners.first[d] < corners.second[d]))
+                  throw InputError("Of",
+                                   "found '" + prm.get("Of") +
+                                     "', allowed are shapes that overlap");
+              }
+            box = BoundingBox<dim>(corners);
+          }
+        else if (next)
+          box = next;
+      return {[shapes](const Point<dim> &point) {
+                return std::all_of(shapes.begin(),
+                                   shapes.end(),
+                                   [&](const auto &shape) {
+                                     return shape->contains(point);
+                                   });
+              },
+              [shapes](const Point<dim> &point) {
+                auto farthest = shapes.front()->proximity(point);
+                for (unsigned int i = 1; i < shapes.size(); ++i)
+                  if (const auto next = shapes[i]->proximity(point);
+                      next.distance > farthest.distance)
+                    farthest = next;
+                return farthest;
+              },
+              box};
+    }
+
+    template <int dim>
+    Shape<dim>
     create_difference(Handler &prm,
                       const Constants &,
                       const NamedShapes<dim> &others)
@@ -278,6 +336,10 @@ namespace impm
          "The first of other shapes without what lies in or on the rest.",
          declares({{"Of", names}}),
          &create_difference<dim>},
+        {"intersection",
+         "All points that lie in each of two or more other shapes.",
+         declares({{"Of", names}}),
+         &create_intersection<dim>},
         {"function",
          "Where an expression is not positive. It has no bounding box.",
          declares({{"Inside where negative", expression}}),

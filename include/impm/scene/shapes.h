@@ -27,10 +27,10 @@ namespace impm
      * Where a place lies relative to the surface. Box, ball and cylinder know
      * it exactly. A union takes the nearest of its parts: exact outside, while
      * inside a surface that two parts share counts as one. A difference takes
-     * the farther of the whole and the outside of its cuts: exact inside a
-     * whole that is, and outside up to corners that the cuts have made, where
-     * the distance may be too small. A function is exact to first order at its
-     * surface, and without curvature.
+     * the farther of the whole and the outside of its cuts, an intersection the
+     * farthest part: exact inside where these are, and outside up to corners
+     * that they make, where the distance may be too small. A function is exact
+     * to first order at its surface, and without curvature.
      */
     std::function<Proximity<dim>(const dealii::Point<dim> &)> proximity;
 
@@ -64,7 +64,7 @@ namespace impm
       create;
   };
 
-  /** box, ball, cylinder (3D), union, difference, function. */
+  /** box, ball, cylinder (3D), union, difference, intersection, function. */
   template <int dim>
   const std::vector<ShapeEntry<dim>> &
   shape_list();

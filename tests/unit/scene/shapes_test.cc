@@ -64,12 +64,18 @@ TEST(Shapes, ListNamesTheKinds)
       }
     return result;
   };
-  EXPECT_EQ(names(shape_list<2>()),
-            (std::vector<std::string>{
-              "box", "ball", "union", "difference", "function"}));
+  EXPECT_EQ(
+    names(shape_list<2>()),
+    (std::vector<std::string>{
+      "box", "ball", "union", "difference", "intersection", "function"}));
   EXPECT_EQ(names(shape_list<3>()),
-            (std::vector<std::string>{
-              "box", "ball", "cylinder", "union", "difference", "function"}));
+            (std::vector<std::string>{"box",
+                                      "ball",
+                                      "cylinder",
+                                      "union",
+                                      "difference",
+                                      "intersection",
+                                      "function"}));
 }
 
 TEST(Shapes, EntriesHaveToBeSet)
@@ -263,6 +269,46 @@ TEST(Shapes, TouchingCutsLeaveNothingBetween)
   EXPECT_TRUE(rest->contains({0.5, 2}));
 }
 
+TEST(Shapes, Intersection)
+{
+  auto others    = two_boxes();
+  others["disc"] = create<2>("ball", {{"Centre", "0, 0"}, {"Radius", "0.5"}});
+  others["half"] = create<2>("function", {{"Inside where negative", "y - x"}});
+  const auto wedge =
+    create<2>("intersection", {{"Of", "left, disc, half"}}, others);
+  EXPECT_TRUE(wedge->contains({0.3, 0.2}));
+  EXPECT_FALSE(wedge->contains({0.2, 0.3}));
+  EXPECT_FALSE(wedge->contains({0.6, 0.1}));
+  EXPECT_FALSE(wedge->contains({0.3, -0.2}));
+  expect_box<2>(wedge->bounding_box, {0, 0}, {0.5, 0.5});
+  EXPECT_NEAR(wedge->proximity({0.3, 0}).distance, 0, 1e-12);
+  EXPECT_NEAR(wedge->proximity({0.6, 0.1}).distance,
+              std::hypot(0.6, 0.1) - 0.5,
+              1e-12);
+  others["far"] = create<2>("ball", {{"Centre", "9, 9"}, {"Radius", "0.5"}});
+  expect_error(
+    [&]() {
+      create<2>("intersection", {{"Of", "disc, far"}}, others);
+    },
+    "Of",
+    {"found 'disc, far'", "shapes that overlap"});
+}
+
+// A floor: what its lower end lies at must not blur its upper one.
+TEST(Shapes, ABoxThatReachesFarIsSharpAtItsOtherEnd)
+{
+  const auto floor = create<2>("box",
+                               {{"Lower corner", "-1e300, -1e300"},
+                                {"Upper corner", "1e300, 1"}});
+  const auto post =
+    create<2>("box", {{"Lower corner", "0, -1"}, {"Upper corner", "1, 1e300"}});
+  EXPECT_TRUE(post->contains({0.5, -1}));
+  EXPECT_FALSE(post->contains({0.5, -1.001}));
+  EXPECT_TRUE(post->contains({0.5, 1e200}));
+  EXPECT_TRUE(floor->contains({0, 1}));
+  EXPECT_FALSE(floor->contains({0, 1.001}));
+}
+
 TEST(Shapes, UnionAndDifferenceErrors)
 {
   const auto try_names = [](const std::string    &kind,
@@ -270,7 +316,7 @@ TEST(Shapes, UnionAndDifferenceErrors)
                             const NamedShapes<2> &others) {
     return [=]() { create<2>(kind, {{"Of", names}}, others); };
   };
-  for (const std::string kind : {"union", "difference"})
+  for (const std::string kind : {"union", "difference", "intersection"})
     {
       expect_error(
         try_names(kind, "left, lift", two_boxes()),

@@ -294,6 +294,8 @@ namespace impm
     bytes["response"]   = response.memory_consumption();
     if (ghost_penalty)
       bytes["ghost_penalty"] = ghost_penalty->memory_consumption();
+    if (contact)
+      bytes["contact"] = contact->memory_consumption();
     return bytes;
   }
 

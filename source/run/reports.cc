@@ -89,6 +89,8 @@ namespace impm
     if (problem) // none if a run that is done was to go on
       summary.memory = problem->memory_by_owner();
     summary.memory["points"] = points.memory_consumption();
+    if (surfaces)
+      summary.memory["surfaces"] = surfaces->memory_consumption();
     summary.memory["grid"]   = grid.memory_consumption();
     summary.memory["matrix"] = counts.matrix_bytes;
     summary.warnings         = warnings.list();

@@ -63,6 +63,15 @@ namespace impm
       return data[point];
     }
 
+    /** Of this rank (bytes). */
+    std::size_t
+    memory_consumption() const
+    {
+      return size() * ((n_fields + 2 * dim) * sizeof(double) +
+                       sizeof(dealii::types::particle_index)) +
+             bytes_of(data, around);
+    }
+
     /** Number of its body in the scene. */
     unsigned int
     body(const unsigned int point) const

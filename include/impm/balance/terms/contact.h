@@ -100,6 +100,14 @@ namespace impm
     double
     smallest_gap() const;
 
+    /** (bytes) */
+    std::size_t
+    memory_consumption() const
+    {
+      return bytes_of(all.links, all.nodes, all.coefficients, states, bounds) +
+             all.prints.memory_consumption();
+    }
+
     const ContactLinks<dim> all;
 
   private:

@@ -199,5 +199,11 @@ namespace impm
       warnings.push_back(
         "with Theta = 0 steps are explicit, so that the sections Solver and "
         "Stabilization do nothing; 'Integrator = explicit' is cheaper");
+    // Not on a Lagrangian grid, whose points only show the motion.
+    if (time.transfer == TransferKind::pic && !lagrangian && time.has_inertia())
+      warnings.push_back(
+        "with Transfer = PIC points lose in every step what of their motion "
+        "the grid does not see: the shorter the steps, the more forces and "
+        "energy are too low (APIC keeps the gradient)");
   }
 } // namespace impm

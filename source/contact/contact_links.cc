@@ -36,9 +36,23 @@ namespace impm
         {
           const unsigned int face = pair.partner, d = face / 2;
           const double       side = face % 2 == 0 ? 1 : -1;
-          if (scene.faces[face].value)
-            obstacle.displacement[d] =
-              face_motion(scene.faces[face], grid, face, time, time + dt);
+          if (const auto &spec = scene.faces[face]; spec.value)
+            {
+              obstacle.displacement[d] =
+                face_motion(spec, grid, face, time, time + dt);
+              // Along itself, too, it takes surfaces with it by friction.
+              Point<dim> place;
+              place[d]      = grid.face_position(face);
+              const auto at = [&](const double instant, const unsigned int c) {
+                spec.value->set_time(instant);
+                return spec.value->value(place, c);
+              };
+              for (unsigned int c = 0; c < spec.value->n_components; ++c)
+                if (spec.value->n_components == dim && c != d)
+                  obstacle.displacement[c] = spec.is_velocity ?
+                                               at(time + dt / 2, c) * dt :
+                                               at(time + dt, c) - at(time, c);
+            }
           obstacle.proximity = [d, side, position = grid.face_position(face)](
                                  const Point<dim> &x) {
             Proximity<dim> result{side * (x[d] - position), {}, {}};

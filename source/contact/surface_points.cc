@@ -1,3 +1,4 @@
+#include <impm/base/exceptions.h>
 #include <impm/contact/surface_points.h>
 #include <impm/scene/surface_of_shape.h>
 
@@ -184,6 +185,41 @@ namespace impm
         });
       }
     sort();
+    check_pairs(contact, bodies);
+  }
+
+  template <int dim>
+  void
+  SurfacePoints<dim>::check_pairs(const ContactSpec &contact,
+                                  const Bodies<dim> &bodies) const
+  {
+    std::vector<unsigned int> n_of_body(bodies.size()),
+      n_bonds(contact.pairs.size());
+    for (unsigned int s = 0; s < size(); ++s)
+      {
+        ++n_of_body[body(s)];
+        if (pair(s) >= 0)
+          ++n_bonds[pair(s)];
+      }
+    Utilities::MPI::sum(n_of_body, communicator, n_of_body);
+    Utilities::MPI::sum(n_bonds, communicator, n_bonds);
+    for (unsigned int q = 0; q < contact.pairs.size(); ++q)
+      {
+        const auto       &pair  = contact.pairs[q];
+        const std::string entry = "Contact/" + pair.name + "/Bodies";
+        if (n_of_body[pair.body] == 0)
+          throw InputError(entry,
+                           "found '" + bodies[pair.body].name +
+                             "', which has no surface within the grid: it "
+                             "fills the grid, or is thinner than its points "
+                             "are apart");
+        if (pair.kind == ContactKind::bonded && n_bonds[q] == 0)
+          throw InputError(entry,
+                           "found '" + bodies[pair.body].name + "' and '" +
+                             bodies[pair.partner].name +
+                             "', whose surfaces do not touch at the start: "
+                             "allowed for bonded bodies are such as do");
+      }
   }
 
   template <int dim>

@@ -19,7 +19,8 @@ namespace impm
   {
   public:
     /** Covers the surfaces of the shapes, a piece for each part of a cell that
-     * a material point stands for. Collective. */
+     * a material point stands for. Throws InputError for a body without any
+     * surface, and for bonded ones that do not touch. Collective. */
     SurfacePoints(const ContactSpec         &contact,
                   const Bodies<dim>         &bodies,
                   GeometryKind               geometry,
@@ -169,6 +170,11 @@ namespace impm
     normal_of(const double *edges);
 
   private:
+    /** Throws InputError where a pair of the scene could never do anything, on
+     * every rank alike. Collective. */
+    void
+    check_pairs(const ContactSpec &contact, const Bodies<dim> &bodies) const;
+
     const Bodies<dim>         &bodies;
     const BackgroundGrid<dim> &grid;
 

@@ -30,6 +30,7 @@ namespace impm
         state.gradient = k * state.slip;
         state.tangent  = k * unit_symmetric_tensor<dim>();
         state.pressure = -state.gradient * link.normal;
+        state.friction = (state.gradient + state.pressure * link.normal).norm();
         return state;
       }
     state.gap                 = link.gap + link.normal * way;
@@ -57,6 +58,7 @@ namespace impm
         const double c = friction_stiffness * k, slip = state.slip.norm();
         const auto   along = unit_symmetric_tensor<dim>() -
                            symmetrize(outer_product(link.normal, link.normal));
+        state.friction = std::min(c * slip, bound);
         if (c * slip <= bound)
           {
             state.energy += 0.5 * c * slip * slip;
@@ -276,7 +278,7 @@ namespace impm
           if (!link.is_bond && p == 0)
             continue;
           sums[0] += link.area * p;
-          sums[1] += link.area * (states[l].gradient + p * link.normal).norm();
+          sums[1] += link.area * states[l].friction;
           sums[2] += link.area;
           largest = std::max(largest, p);
         }

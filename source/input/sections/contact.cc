@@ -183,7 +183,13 @@ namespace impm
       for (const auto &pair : pairs)
         if (pair.partner_kind == PartnerKind::face)
           {
+            const auto        &face  = faces[pair.partner];
             const unsigned int layer = bodies[pair.body].layer;
+            if (face.value && !face.moves_grid)
+              section.refuse("Pairs",
+                             "where '" + pair.name + "' names '" + face.name +
+                               "', which is to move: allowed are faces at "
+                               "rest, and such as move the grid");
             for (unsigned int b = 0; b < bodies.size(); ++b)
               if (!bodies[b].rigid && bodies[b].layer == layer &&
                   !meet(b, pair))
@@ -266,6 +272,14 @@ namespace impm
         ContactPair pair;
         bool        is_glued = false;
         add_pair(section.subsection(name), bodies, pair, is_glued);
+        for (const auto &other : contact.pairs)
+          if (section.is_read && other.partner_kind == pair.partner_kind &&
+              ((other.body == pair.body && other.partner == pair.partner) ||
+               (pair.partner_kind == PartnerKind::deformable &&
+                other.body == pair.partner && other.partner == pair.body)))
+            section.subsection(name).refuse("Bodies",
+                                            "which make the pair '" +
+                                              other.name + "' already");
         if (!is_glued)
           contact.pairs.push_back(pair);
       }

@@ -303,3 +303,37 @@ TEST(SurfacePointsMpi, OnFacesThatTheBodyMeets)
                     1e-9,
                     Tensor<1, 3>({1, 0, 0.5}));
 }
+
+
+// A bond between bodies that are apart would do nothing, and so would a body
+// without a surface.
+TEST(SurfacePoints, PairsThatCouldDoNothingAreRefused)
+{
+  const Overrides two   = {"Geometry/Shapes=box, other",
+                           "Geometry/box/Upper corner=1, 0.4",
+                           "Geometry/other/Lower corner=0, 0.4",
+                           "Geometry/other/Upper corner=1, 0.9",
+                           "Bodies/Names=block, second",
+                           "Bodies/second/Shape=other",
+                           "Bodies/second/Material=rubber",
+                           "Contact/Pairs=p",
+                           "Contact/p/Bodies=block, second",
+                           "Contact/p/Kind=bonded"};
+  const Overrides apart = {"Geometry/other/Lower corner=0, 0.7"};
+  const Overrides full  = {"Geometry/Shapes=box, far",
+                           "Geometry/far/Lower corner=8, 8",
+                           "Geometry/far/Upper corner=9, 9",
+                           "Bodies/Names=block, tool",
+                           "Bodies/tool/Kind=rigid",
+                           "Bodies/tool/Contact=surface",
+                           "Bodies/tool/Shape=far",
+                           "Contact/Pairs=p",
+                           "Contact/p/Bodies=block, tool",
+                           "Contact/p/Kind=frictionless"};
+  const auto      make  = [](const Overrides &overrides) {
+    Model<2> model(block_scene("plane strain"), overrides);
+  };
+  EXPECT_NO_THROW(make(two));
+  EXPECT_THROW(make(two + apart), InputError);
+  EXPECT_THROW(make(full), InputError);
+}

@@ -169,6 +169,29 @@ TEST(ContactInput, AFaceThatOneOfTwoGluedBodiesMeets)
 
 
 // The deformable one comes first, in whatever order they are named.
+// Both would press: a contact twice as stiff, whose friction is anybody's
+// guess.
+TEST(ContactInput, APairThatIsNamedTwice)
+{
+  for (const std::string members : {"block, second", "second, block"})
+    expect_blame(pair("block, second") +
+                   Overrides{"Contact/Pairs=p, q",
+                             "Contact/q/Bodies=" + members,
+                             "Contact/q/Kind=frictionless"},
+                 "Contact/q/Bodies",
+                 {"'p' already"});
+}
+
+// It would be where it was at the start again in every step.
+TEST(ContactInput, AFaceThatMovesWithoutTheGrid)
+{
+  expect_blame(Overrides{"Boundary conditions/top/Type=velocity",
+                         "Boundary conditions/top/Value=0; -0.1"} +
+                 pair("block, top"),
+               "Contact/Pairs",
+               {"'top'", "move the grid"});
+}
+
 TEST(ContactInput, OrderOfNames)
 {
   for (const std::string members : {"block, tool", "tool, block"})

@@ -120,6 +120,7 @@ namespace impm
        * what that adds (Pa/m). */
       dealii::SymmetricTensor<2, dim> tangent, curved;
       double                          pressure = 0; ///< (Pa)
+      double                          friction = 0; ///< along it (Pa)
       double                          gap      = 0; ///< (m)
       /** Of the layer, before what is beyond the bound has slipped (m). */
       dealii::Tensor<1, dim> slip;

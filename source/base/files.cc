@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 
@@ -21,6 +22,18 @@ namespace impm
     std::ostringstream content;
     content << std::ifstream(file_name).rdbuf();
     return content.str();
+  }
+
+  std::string
+  find_file(const std::string &name,
+            const std::string &parameter_file,
+            const std::string &scene)
+  {
+    const auto folder = std::filesystem::path(parameter_file).parent_path();
+    for (const auto &place : {folder, (folder / scene).parent_path()})
+      if (std::filesystem::exists(place / name))
+        return (place / name).string();
+    return name;
   }
 
   void

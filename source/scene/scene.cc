@@ -86,7 +86,7 @@ namespace impm
       NamedMaterials   materials;
       add_general(top, scene.general);
       top.constants = scene.general.constants;
-      add_geometry(top, scene.geometry, shapes);
+      add_geometry(top, scene.geometry, shapes, parameter_file);
       add_grid(top, scene.grid, scene.geometry);
       const bool lagrangian = scene.grid.is_lagrangian();
       scene.history.emplace(scene.geometry);

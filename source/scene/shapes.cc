@@ -5,7 +5,9 @@
 #include <impm/base/names.h>
 #include <impm/input/expressions.h>
 #include <impm/input/parameter_file.h>
+#include <impm/scene/mesh_file.h>
 #include <impm/scene/shapes.h>
+#include <impm/scene/surface_mesh.h>
 
 #include <boost/algorithm/cxx11/any_of.hpp>
 #include <boost/range/adaptor/map.hpp>
@@ -29,12 +31,13 @@ namespace impm
      * the size of the shape: round-off must not decide. */
     constexpr double tolerance = 1e-12;
 
-    /** What may stand in an entry. All have to be set: the defaults match the
-     * patterns, but create() refuses them. */
+    /** What may stand in an entry. Most have to be set: their defaults match
+     * the patterns, but create() refuses them. */
     struct Value
     {
       std::shared_ptr<const Patterns::PatternBase> pattern;
       std::string                                  documentation, fallback = "";
+      bool                                         has_to_be_set = true;
     };
 
     auto
@@ -42,8 +45,11 @@ namespace impm
     {
       return [entries](Handler &prm) {
         for (const auto &[name, value] : entries)
-          prm.declare_entry(
-            name, value.fallback, *value.pattern, value.documentation, true);
+          prm.declare_entry(name,
+                            value.fallback,
+                            *value.pattern,
+                            value.documentation,
+                            value.has_to_be_set);
       };
     }
 
@@ -305,6 +311,35 @@ namespace impm
     }
 
     template <int dim>
+    Shape<dim>
+    create_mesh(Handler &prm, const Constants &, const NamedShapes<dim> &)
+    {
+      const std::string file  = prm.get("File");
+      const double      scale = prm.get_double("Scale");
+      const auto        shift = get_point<dim>(prm, "Shift");
+      if (!(scale > 0 && std::isfinite(scale)))
+        throw InputError("Scale",
+                         "found '" + prm.get("Scale") +
+                           "', allowed are numbers > 0");
+      try
+        {
+          auto surface = read_mesh_file<dim>(file);
+          for (auto &vertex : surface.vertices)
+            vertex = scale * vertex + shift;
+          const auto mesh =
+            std::make_shared<const SurfaceMesh<dim>>(std::move(surface));
+          return {
+            [mesh](const Point<dim> &point) { return mesh->contains(point); },
+            [mesh](const Point<dim> &point) { return mesh->proximity(point); },
+            mesh->bounding_box()};
+        }
+      catch (const InputError &error)
+        {
+          throw InputError("File", "found '" + file + "', " + error.what());
+        }
+    }
+
+    template <int dim>
     std::vector<ShapeEntry<dim>>
     make_list()
     {
@@ -318,6 +353,20 @@ namespace impm
                              "Expression in " +
                                FunctionParser<dim>::default_variable_names() +
                                " [m] and the constants; 0 is the surface."};
+
+      const Value file{
+        Patterns::Anything().clone(),
+        std::string(".msh, .vtk, .inp (Abaqus), .ucd") +
+          (dim == 3 ? ", .stl" : "") +
+          ": a mesh, whose boundary is taken, or a closed surface."};
+      const Value scale{Patterns::Double().clone(),
+                        "Numbers of the file times this are metres.",
+                        "1",
+                        false};
+      const Value shift{Patterns::List(Patterns::Double()).clone(),
+                        "Is added to all places after that [m].",
+                        dim == 2 ? "0, 0" : "0, 0, 0",
+                        false};
 
       std::vector<ShapeEntry<dim>> list = {
         {"box",
@@ -340,6 +389,10 @@ namespace impm
          "All points that lie in each of two or more other shapes.",
          declares({{"Of", names}}),
          &create_intersection<dim>},
+        {"mesh",
+         "What a mesh from a file fills.",
+         declares({{"File", file}, {"Scale", scale}, {"Shift", shift}}),
+         &create_mesh<dim>},
         {"function",
          "Where an expression is not positive. It has no bounding box.",
          declares({{"Inside where negative", expression}}),

@@ -56,7 +56,7 @@ namespace impm
 
   /**
    * Reads the scene and checks what no single entry can tell. Curves of
-   * references may lie beside the parameter file.
+   * references and meshes of shapes may lie beside the parameter file.
    */
   template <int dim>
   Scene<dim>

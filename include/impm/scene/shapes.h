@@ -24,13 +24,13 @@ namespace impm
     std::function<bool(const dealii::Point<dim> &)> contains;
 
     /**
-     * Where a place lies relative to the surface. Box, ball and cylinder know
-     * it exactly. A union takes the nearest of its parts: exact outside, while
-     * inside a surface that two parts share counts as one. A difference takes
-     * the farther of the whole and the outside of its cuts, an intersection the
-     * farthest part: exact inside where these are, and outside up to corners
-     * that they make, where the distance may be too small. A function is exact
-     * to first order at its surface, and without curvature.
+     * Where a place lies relative to the surface. Box, ball, cylinder and
+     * mesh know it exactly. A union takes the nearest of its parts: exact
+     * outside, while inside a surface that two parts share counts as one. A
+     * difference takes the farther of the whole and the outside of its cuts, an
+     * intersection the farthest part: exact inside where these are, and outside
+     * up to corners that they make, where the distance may be too small. A
+     * function is exact to first order at its surface, and without curvature.
      */
     std::function<Proximity<dim>(const dealii::Point<dim> &)> proximity;
 
@@ -64,7 +64,8 @@ namespace impm
       create;
   };
 
-  /** box, ball, cylinder (3D), union, difference, intersection, function. */
+  /** box, ball, cylinder (3D), union, difference, intersection, mesh, function.
+   */
   template <int dim>
   const std::vector<ShapeEntry<dim>> &
   shape_list();

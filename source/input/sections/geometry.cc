@@ -1,3 +1,4 @@
+#include <impm/base/files.h>
 #include <impm/input/sections/geometry.h>
 
 namespace impm
@@ -20,7 +21,10 @@ namespace impm
 
   template <int dim>
   void
-  add_geometry(const Section &top, GeometryKind &kind, NamedShapes<dim> &shapes)
+  add_geometry(const Section     &top,
+               GeometryKind      &kind,
+               NamedShapes<dim>  &shapes,
+               const std::string &parameter_file)
   {
     const auto section = top.subsection("Geometry");
     section.add(kinds,
@@ -36,7 +40,14 @@ namespace impm
         const auto  shape = section.subsection(name);
         const auto &entry =
           shape.pick("Kind", shape_list<dim>(), "What the shape is.");
+        const std::string file = shape.get("File");
         shape.inside([&](auto &prm) {
+          // So that the resolved parameters find it from here, too.
+          if (shape.is_read && !file.empty())
+            prm.set("File",
+                    find_file(file,
+                              parameter_file,
+                              shape.chosen("Study/Scene", "")));
           if (shape.is_read)
             shapes[name] = std::make_shared<const Shape<dim>>(
               entry.create(prm, shape.constants, shapes));
@@ -47,7 +58,13 @@ namespace impm
   }
 
   template void
-  add_geometry(const Section &, GeometryKind &, NamedShapes<2> &);
+  add_geometry(const Section &,
+               GeometryKind &,
+               NamedShapes<2> &,
+               const std::string &);
   template void
-  add_geometry(const Section &, GeometryKind &, NamedShapes<3> &);
+  add_geometry(const Section &,
+               GeometryKind &,
+               NamedShapes<3> &,
+               const std::string &);
 } // namespace impm

@@ -6,7 +6,6 @@
 #include <impm/input/sections/reference.h>
 #include <impm/points/point_fields.h>
 
-#include <filesystem>
 #include <sstream>
 
 namespace impm
@@ -149,14 +148,13 @@ namespace impm
     void
     read_curve(dealii::ParameterHandler &prm,
                const std::string        &parameter_file,
+               const std::string        &scene,
                ReferenceSpec<dim>       &spec)
     {
       const bool from_file = !prm.get("File").empty();
-      const auto beside =
-        std::filesystem::path(parameter_file).parent_path() / prm.get("File");
       // So that the resolved parameters find it from here, too.
-      if (from_file && std::filesystem::exists(beside))
-        prm.set("File", beside.string());
+      if (from_file)
+        prm.set("File", find_file(prm.get("File"), parameter_file, scene));
       const auto points =
         from_file ?
           read_file(prm.get("File"), spec.against, spec.columns.front()) :
@@ -247,8 +245,12 @@ namespace impm
                     "The column of the history that is the abscissa.",
                     "time");
       if (section.is_read && spec.kind == ReferenceKind::curve && !spec.value)
-        section.inside(
-          [&](auto &prm) { read_curve(prm, parameter_file, spec); });
+        section.inside([&](auto &prm) {
+          read_curve(prm,
+                     parameter_file,
+                     section.chosen("Study/Scene", ""),
+                     spec);
+        });
       if (spec.kind != ReferenceKind::probe)
         section.add(norms,
                     spec.norm,

@@ -64,10 +64,14 @@ TEST(Shapes, ListNamesTheKinds)
       }
     return result;
   };
-  EXPECT_EQ(
-    names(shape_list<2>()),
-    (std::vector<std::string>{
-      "box", "ball", "union", "difference", "intersection", "function"}));
+  EXPECT_EQ(names(shape_list<2>()),
+            (std::vector<std::string>{"box",
+                                      "ball",
+                                      "union",
+                                      "difference",
+                                      "intersection",
+                                      "mesh",
+                                      "function"}));
   EXPECT_EQ(names(shape_list<3>()),
             (std::vector<std::string>{"box",
                                       "ball",
@@ -75,6 +79,7 @@ TEST(Shapes, ListNamesTheKinds)
                                       "union",
                                       "difference",
                                       "intersection",
+                                      "mesh",
                                       "function"}));
 }
 

@@ -7,11 +7,14 @@
 
 namespace impm
 {
+  /** Meshes of shapes are looked for beside the parameter file, by
+   * find_file(). */
   template <int dim>
   void
-  add_geometry(const Section    &top,
-               GeometryKind     &kind,
-               NamedShapes<dim> &shapes);
+  add_geometry(const Section     &top,
+               GeometryKind      &kind,
+               NamedShapes<dim>  &shapes,
+               const std::string &parameter_file);
 
   bool
   is_three_d(const ParameterFile::Chosen &chosen);

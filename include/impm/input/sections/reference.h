@@ -51,8 +51,7 @@ namespace impm
   name_of(Norm norm);
 
   /**
-   * Files are looked for beside the parameter file, then in the working
-   * directory. What the points and the history of a scene say is checked by
+   * Files are looked for beside the parameter file, by find_file(). What the points and the history of a scene say is checked by
    * Reference.
    */
   template <int dim>

@@ -50,6 +50,7 @@ namespace impm
 
       ~Gmsh()
       {
+        gmsh::logger::stop(); // or it would keep its messages
         gmsh::finalize();
       }
 

@@ -54,7 +54,8 @@ namespace impm
     size = box.get_boundary_points().first.distance(
       box.get_boundary_points().second);
 
-    std::vector<Leaf> leaves;
+    std::vector<Leaf>             leaves;
+    std::vector<BoundingBox<dim>> boxes;
     at_vertex.resize(surface.vertices.size());
     for (unsigned int f = 0; f < surface.facets.size(); ++f)
       {
@@ -77,10 +78,14 @@ namespace impm
         leaves.emplace_back(BoundingBox<dim>(std::vector<Point<dim>>(
                               corners.begin(), corners.end())),
                             f);
+        boxes.push_back(leaves.back().first);
       }
     if constexpr (dim == 3)
       add_edges();
-    tree = pack_rtree(leaves);
+    tree     = pack_rtree(leaves);
+    side_map = SideMap<dim>(box, boxes, [&](const Point<dim> &place) {
+      return distance_to(find_nearest(place), place) < 0;
+    });
   }
 
   template <int dim>
@@ -176,15 +181,18 @@ namespace impm
   typename SurfaceMesh<dim>::Nearest
   SurfaceMesh<dim>::find_nearest(const Point<dim> &place) const
   {
-    Nearest nearest{{}, std::numeric_limits<double>::max(), 0, nullptr};
-    for (auto leaf = tree.qbegin(
-           bgi::nearest(place, static_cast<unsigned int>(tree.size())));
-         leaf != tree.qend() &&
-         boost::geometry::distance(place, leaf->first) < nearest.distance;
+    // The facet with the nearest box is near. What is nearer comes closer.
+    Leaf guess;
+    tree.query(bgi::nearest(place, 1), &guess);
+    auto             nearest = nearest_of(guess.second, place);
+    BoundingBox<dim> around({place, place});
+    around.extend(nearest.distance);
+    for (auto leaf = tree.qbegin(bgi::intersects(around)); leaf != tree.qend();
          ++leaf)
-      if (const auto found = nearest_of(leaf->second, place);
-          found.distance < nearest.distance)
-        nearest = found;
+      if (boost::geometry::distance(place, leaf->first) < nearest.distance)
+        if (const auto found = nearest_of(leaf->second, place);
+            found.distance < nearest.distance)
+          nearest = found;
     return nearest;
   }
 
@@ -207,6 +215,9 @@ namespace impm
       if (!(place[d] >= box.lower_bound(d) - tolerance * size &&
             place[d] <= box.upper_bound(d) + tolerance * size))
         return false;
+    using Side = typename SideMap<dim>::Side;
+    if (const auto side = side_map.side_of(place); side != Side::unknown)
+      return side == Side::inside;
     return distance_to(find_nearest(place), place) <= tolerance * size;
   }
 

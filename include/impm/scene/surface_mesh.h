@@ -7,6 +7,7 @@
 
 #include <impm/scene/closed_surface.h>
 #include <impm/scene/proximity.h>
+#include <impm/scene/side_map.h>
 
 #include <utility>
 #include <vector>
@@ -95,6 +96,8 @@ namespace impm
 
     using Leaf = std::pair<dealii::BoundingBox<dim>, unsigned int>;
     dealii::RTree<Leaf> tree; ///< of the facets with an area
+
+    SideMap<dim> side_map;
   };
 } // namespace impm
 

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "expect_blame.h"
+#include "mesh_writer.h"
 
 using namespace dealii;
 using namespace impm;
@@ -129,6 +130,59 @@ TEST(SeedingMpi, CutCellsHaveTheVolumeOfTheShape)
                     4 * pi / 3 * 0.064,
                     {0.5, 0.45, 0.5},
                     4e-3);
+}
+
+
+// The facets of a sphere hold less than it by the square of their size.
+TEST(SeedingMpi, ASphereFromAFileConverges)
+{
+  const double ball  = 4 * numbers::PI / 3 * 0.064;
+  double       error = 0;
+  for (const unsigned int n : {2, 4, 8})
+    {
+      const MeshFile file(binary_stl(sphere_triangles({500, 450, 500}, 400, n)),
+                          ".stl");
+      const Overrides mesh = {"Geometry/Shapes=box, mesh",
+                              "Geometry/mesh/Kind=mesh",
+                              "Geometry/mesh/File=" + file.name,
+                              "Geometry/mesh/Scale=0.001",
+                              "Bodies/block/Shape=mesh",
+                              "Bodies/block/Points per cell=4"};
+      const Model<3>  model(block_scene("3D"), cut + mesh);
+      const auto [volume, centre] = moments(model);
+      EXPECT_NEAR(centre.distance({0.5, 0.45, 0.5}), 0, 1e-3);
+      if (n > 2)
+        EXPECT_NEAR(error / (1 - volume / ball), 4, 0.7);
+      error = 1 - volume / ball;
+      // other points, the same body
+      for (const std::string surface : {"points", "whole cells"})
+        EXPECT_NEAR(moments(Model<3>(block_scene("3D"),
+                                     mesh + Overrides{"Bodies/block/Surface=" +
+                                                      surface}))
+                        .first /
+                      volume,
+                    1,
+                    0.2);
+    }
+}
+
+
+// Shapes and velocities are given in space, not on the box of the grid.
+TEST(SeedingMpi, ShapesAreInSpaceUnderAMap)
+{
+  const Overrides lagrangian = {"Grid/Method=Lagrangian",
+                                "Grid/Map=2 + x + 0.5*y; 3 + y*(1 + x)"};
+  const Overrides shape      = {"Geometry/box/Lower corner=2, 3",
+                                "Geometry/box/Upper corner=3.5, 5"};
+  EXPECT_NEAR(moments(Model<2>(block_scene("plane strain"),
+                               lagrangian + function("1.9 - x") + shape))
+                .first,
+              1.5 - 0.25,
+              1e-12);
+  expect_blame(block_scene("plane strain"),
+               lagrangian + function("x - 1") + shape,
+               "Bodies/block/Shape",
+               {"has no points"});
 }
 
 

@@ -105,8 +105,13 @@ namespace
         if (wanted.distance > 1e-9)
           {
             EXPECT_LT((found.normal - wanted.normal).norm(), 1e-12) << place;
-            EXPECT_LT((found.curvature - wanted.curvature).norm(), 1e-9)
-              << place;
+            // It jumps where a face ends.
+            bool is_at_end = false;
+            for (unsigned int d = 0; d < dim; ++d)
+              is_at_end = is_at_end || place[d] == 0 || place[d] == 1;
+            if (!is_at_end)
+              EXPECT_LT((found.curvature - wanted.curvature).norm(), 1e-9)
+                << place;
           }
         else
           EXPECT_LT(found.curvature.norm(), 1e-9) << place;

@@ -162,7 +162,7 @@ TEST(SeedingMpi, ASphereFromAFileConverges)
                         .first /
                       volume,
                     1,
-                    0.2);
+                    surface == "points" ? 0.1 : 0.4);
     }
 }
 
@@ -174,11 +174,12 @@ TEST(SeedingMpi, ShapesAreInSpaceUnderAMap)
                                 "Grid/Map=2 + x + 0.5*y; 3 + y*(1 + x)"};
   const Overrides shape      = {"Geometry/box/Lower corner=2, 3",
                                 "Geometry/box/Upper corner=3.5, 5"};
-  EXPECT_NEAR(moments(Model<2>(block_scene("plane strain"),
-                               lagrangian + function("1.9 - x") + shape))
-                .first,
-              1.5 - 0.25,
-              1e-12);
+  const Model<2>  model(block_scene("plane strain"),
+                       lagrangian + function("1.9 - x") + shape);
+  double          volume = 0;
+  for (unsigned int p = 0; p < model.points.size(); ++p)
+    volume += model.points.initial_volume(p);
+  EXPECT_NEAR(Utilities::MPI::sum(volume, MPI_COMM_WORLD), 1.25, 1e-12);
   expect_blame(block_scene("plane strain"),
                lagrangian + function("x - 1") + shape,
                "Bodies/block/Shape",

@@ -1,6 +1,8 @@
 #include <impm/base/files.h>
 #include <impm/input/sections/geometry.h>
 
+#include <filesystem>
+
 namespace impm
 {
   namespace
@@ -42,12 +44,16 @@ namespace impm
           shape.pick("Kind", shape_list<dim>(), "What the shape is.");
         const std::string file = shape.get("File");
         shape.inside([&](auto &prm) {
-          // So that the resolved parameters find it from here, too.
+          // So that the resolved parameters find it, and a restart compares it,
+          // from anywhere.
           if (shape.is_read && !file.empty())
             prm.set("File",
-                    find_file(file,
-                              parameter_file,
-                              shape.chosen("Study/Scene", "")));
+                    std::filesystem::absolute(
+                      find_file(file,
+                                parameter_file,
+                                shape.chosen("Study/Scene", "")))
+                      .lexically_normal()
+                      .string());
           if (shape.is_read)
             shapes[name] = std::make_shared<const Shape<dim>>(
               entry.create(prm, shape.constants, shapes));

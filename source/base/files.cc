@@ -30,9 +30,12 @@ namespace impm
             const std::string &scene)
   {
     const auto folder = std::filesystem::path(parameter_file).parent_path();
-    for (const auto &place : {folder, (folder / scene).parent_path()})
-      if (std::filesystem::exists(place / name))
-        return (place / name).string();
+    const auto beside = folder / name;
+    const auto beside_scene =
+      (folder / scene).lexically_normal().parent_path() / name;
+    for (const auto &path : {beside, beside_scene})
+      if (std::filesystem::exists(path))
+        return path.string();
     return name;
   }
 

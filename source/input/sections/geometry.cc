@@ -42,18 +42,18 @@ namespace impm
         const auto  shape = section.subsection(name);
         const auto &entry =
           shape.pick("Kind", shape_list<dim>(), "What the shape is.");
-        const std::string file = shape.get("File");
+        // An absolute path, so that the resolved parameters find it, and a
+        // restart compares it, from anywhere.
+        std::string file = shape.get("File");
+        if (!file.empty())
+          file =
+            std::filesystem::absolute(
+              find_file(file, parameter_file, shape.chosen("Study/Scene", "")))
+              .lexically_normal()
+              .string();
         shape.inside([&](auto &prm) {
-          // So that the resolved parameters find it, and a restart compares it,
-          // from anywhere.
           if (shape.is_read && !file.empty())
-            prm.set("File",
-                    std::filesystem::absolute(
-                      find_file(file,
-                                parameter_file,
-                                shape.chosen("Study/Scene", "")))
-                      .lexically_normal()
-                      .string());
+            prm.set("File", file);
           if (shape.is_read)
             shapes[name] = std::make_shared<const Shape<dim>>(
               entry.create(prm, shape.constants, shapes));

@@ -244,13 +244,10 @@ namespace impm
                     spec.against,
                     "The column of the history that is the abscissa.",
                     "time");
+      const auto scene = section.chosen("Study/Scene", "");
       if (section.is_read && spec.kind == ReferenceKind::curve && !spec.value)
-        section.inside([&](auto &prm) {
-          read_curve(prm,
-                     parameter_file,
-                     section.chosen("Study/Scene", ""),
-                     spec);
-        });
+        section.inside(
+          [&](auto &prm) { read_curve(prm, parameter_file, scene, spec); });
       if (spec.kind != ReferenceKind::probe)
         section.add(norms,
                     spec.norm,

@@ -51,8 +51,8 @@ namespace impm
   name_of(Norm norm);
 
   /**
-   * Files are looked for beside the parameter file, by find_file(). What the points and the history of a scene say is checked by
-   * Reference.
+   * Files are looked for beside the parameter file, by find_file(). What the
+   * points and the history of a scene say is checked by Reference.
    */
   template <int dim>
   void

@@ -1,5 +1,6 @@
 #include <impm/balance/step_problem.h>
 #include <impm/balance/terms/contact.h>
+#include <impm/balance/terms/following_loads.h>
 #include <impm/balance/terms/isolated_cells.h>
 #include <impm/base/exceptions.h>
 
@@ -104,6 +105,11 @@ namespace impm
                      discretization->locally_owned_dofs().n_elements(),
                    0),
         grid.communicator))
+    , surface_prints(
+        surfaces ?
+          std::make_unique<const Footprints<dim>>(
+            surfaces->footprints(builder, populated, *discretization)) :
+          nullptr)
     , internal_forces(std::make_unique<InternalForces<dim>>(
         footprints, response, discretization->smallest_cell_extent))
     , ghost_penalty(scene.stabilization.ghost_penalty > 0 &&
@@ -122,21 +128,35 @@ namespace impm
                                            footprints,
                                            populated,
                                            *discretization,
+                                           surfaces,
+                                           surface_prints.get(),
                                            motion.mass,
                                            time,
                                            time + dt) :
               nullptr)
-    , contact(surfaces ? std::make_unique<Contact<dim>>(
-                           ContactLinks<dim>(scene,
-                                             grid,
-                                             *surfaces,
-                                             rigid,
-                                             populated,
-                                             *discretization,
-                                             builder,
-                                             time,
-                                             dt)) :
-                         nullptr)
+    , following_loads(
+        FollowingLoads<dim>::exist_in(scene) ?
+          std::make_unique<FollowingLoads<dim>>(scene,
+                                                grid,
+                                                surfaces,
+                                                surface_prints.get(),
+                                                populated,
+                                                time,
+                                                time + dt) :
+          nullptr)
+    , contact(
+        surfaces && !scene.contact.pairs.empty() ?
+          std::make_unique<Contact<dim>>(ContactLinks<dim>(scene,
+                                                           grid,
+                                                           *surfaces,
+                                                           *surface_prints,
+                                                           rigid,
+                                                           populated,
+                                                           *discretization,
+                                                           builder,
+                                                           time,
+                                                           dt)) :
+          nullptr)
     , start_forces(find_start_forces())
     , start_acceleration(find_start_acceleration())
     , nodal_forces(make_nodal_forces(points,
@@ -153,6 +173,7 @@ namespace impm
                those_that_are({internal_forces.get(),
                                ghost_penalty.get(),
                                loads.get(),
+                               following_loads.get(),
                                contact.get()}),
                those_that_are({nodal_forces.get()}),
                start_forces,
@@ -169,7 +190,7 @@ namespace impm
                              return body.rigid ||
                                     body.material->has_potential();
                            }) &&
-                 !integrator.has_stress_in_the_middle(),
+                 !following_loads && !integrator.has_stress_in_the_middle(),
                scene.geometry != GeometryKind::axisymmetric},
               counts)
   {
@@ -196,8 +217,10 @@ namespace impm
         !(integrator.keeps_acceleration() && time == 0))
       return forces;
     discretization->initialize(forces);
-    for (const Term *term :
-         those_that_are({internal_forces.get(), loads.get(), contact.get()}))
+    for (const Term *term : those_that_are({internal_forces.get(),
+                                            loads.get(),
+                                            following_loads.get(),
+                                            contact.get()}))
       term->add_start_force(forces);
     forces.compress(VectorOperation::add);
     discretization->condense_hanging(forces);
@@ -294,6 +317,8 @@ namespace impm
     bytes["response"]   = response.memory_consumption();
     if (ghost_penalty)
       bytes["ghost_penalty"] = ghost_penalty->memory_consumption();
+    if (surface_prints)
+      bytes["surface_footprints"] = surface_prints->memory_consumption();
     if (contact)
       bytes["contact"] = contact->memory_consumption();
     return bytes;

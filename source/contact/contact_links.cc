@@ -121,6 +121,7 @@ namespace impm
   ContactLinks<dim>::ContactLinks(const Scene<dim>          &scene,
                                   const BackgroundGrid<dim> &grid,
                                   const SurfacePoints<dim>  &points,
+                                  const Footprints<dim>     &prints,
                                   const RigidBodies<dim>    &rigid,
                                   const PopulatedCells<dim> &populated,
                                   const Discretization<dim> &discretization,
@@ -134,16 +135,14 @@ namespace impm
     const FacedSurface<dim> faced(patches_of(points));
 
     using Place = typename FootprintBuilder<dim>::Place;
-    std::vector<Place> own, others;
+    std::vector<Place> others;
     unsigned int       s = 0;
     for (const auto &particle : points.sorted.particles)
       {
-        const unsigned int body = points.body(s);
-        const auto         x    = points.place(particle);
-        const auto         cell = particle.get_surrounding_cell();
-        own.push_back(
-          {particle.get_location(), cell, scene.bodies[body].layer});
-        double extent = cell_extent(cell, 0);
+        const unsigned int body   = points.body(s);
+        const auto         x      = points.place(particle);
+        const auto         cell   = particle.get_surrounding_cell();
+        double             extent = cell_extent(cell, 0);
         for (unsigned int d = 1; d < dim; ++d)
           extent = std::min(extent, cell_extent(cell, d));
         for (unsigned int q = 0; q < pairs.size(); ++q)
@@ -215,7 +214,6 @@ namespace impm
           }
         ++s;
       }
-    prints               = builder.build_at(own, populated, discretization);
     const auto of_others = builder.build_at(others, populated, discretization);
     for (unsigned int l = 0; l < links.size(); ++l)
       {

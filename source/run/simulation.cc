@@ -75,10 +75,9 @@ namespace impm
     , policy(other_policy ? std::move(other_policy) : make_policy(scene))
     , points(seed_points(scene, *policy, grid))
     , rigid(scene.bodies, scene.geometry, grid)
-    , surfaces(scene.contact.pairs.empty() ?
-                 nullptr :
-                 std::make_unique<SurfacePoints<dim>>(
-                   scene.contact, scene.bodies, scene.geometry, grid))
+    , surfaces(SurfacePoints<dim>::exist_in(scene) ?
+                 std::make_unique<SurfacePoints<dim>>(scene, grid) :
+                 nullptr)
     , balance(grid, points)
     , integrator(make_time_integrator(scene.time))
     , control(scene.time, integrator->order())
@@ -398,8 +397,10 @@ namespace impm
     const double       end = time + report.dt;
     is_between_steps       = false;
     advance_points(*problem, result, increments, scene.time, points);
+    if (problem->contact)
+      problem->contact->remember_meetings(*surfaces);
     if (surfaces)
-      problem->contact->advance(result.increment, *surfaces);
+      surfaces->advance(*problem->surface_prints, result.increment);
     policy->advance(grid, result, time, end);
     rigid.move(time, end);
     if (is_off_grid() && off_grid.n_steps++ == 0)

@@ -1,4 +1,5 @@
 #include <impm/balance/terms/contact.h>
+#include <impm/balance/terms/following_loads.h>
 #include <impm/run/work_done.h>
 
 #include <cmath>
@@ -41,6 +42,8 @@ namespace impm
         sum[1] += u.local_element(i);
         sum[2] += 1;
       }
+    if (problem.following_loads)
+      work += problem.following_loads->work(u);
     if (problem.contact)
       {
         work += problem.contact->work_of_obstacles();

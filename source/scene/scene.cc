@@ -101,12 +101,18 @@ namespace impm
                   scene.faces,
                   scene.grid,
                   scene.warnings);
-      add_loads(top, scene.loads, scene.bodies, lagrangian);
+      add_loads(top, scene.loads, scene.bodies, scene.grid, scene.geometry);
       add_time(top, scene.time, lagrangian, scene.warnings);
       choose_touch(scene);
       check_reset(top, scene);
       check_contact(top, scene);
-      add_solver(top, scene.solver, scene.time, scene.bodies);
+      add_solver(top,
+                 scene.solver,
+                 scene.time,
+                 scene.bodies,
+                 scene.loads.follow_surfaces() ||
+                   any_of(scene.faces,
+                          [](const auto &face) { return face.is_pressed; }));
       add_stabilization(top, scene.stabilization, scene.time, lagrangian);
       add_output(top, scene.output, scene.faces, scene.bodies);
       add_references(top, scene.references, parameter_file);

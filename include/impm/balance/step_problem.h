@@ -32,6 +32,9 @@ namespace impm
   class Contact;
 
   template <int dim>
+  class FollowingLoads;
+
+  template <int dim>
   class SurfacePoints;
 
   /**
@@ -138,10 +141,14 @@ namespace impm
     /** Neither constrained nor unused, of all ranks. */
     const unsigned int n_active_dofs;
 
+    /** Of the points of surfaces, or null if there are none. */
+    const std::unique_ptr<const Footprints<dim>> surface_prints;
+
     // The terms of the balance, or null.
     const std::unique_ptr<InternalForces<dim>> internal_forces;
     const std::unique_ptr<GhostPenalty<dim>>   ghost_penalty;
     const std::unique_ptr<Loads<dim>>          loads;
+    const std::unique_ptr<FollowingLoads<dim>> following_loads;
     const std::unique_ptr<Contact<dim>>        contact;
 
     const Vector start_forces; ///< f(0) (N), if asked for, or empty

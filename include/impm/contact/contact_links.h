@@ -60,10 +60,11 @@ namespace impm
   {
   public:
     /** For the step from `time` to `time + dt`. `points` are in the cells of
-     * the grid. Collective. */
+     * the grid, with these footprints. Collective. */
     ContactLinks(const Scene<dim>          &scene,
                  const BackgroundGrid<dim> &grid,
                  const SurfacePoints<dim>  &points,
+                 const Footprints<dim>     &prints,
                  const RigidBodies<dim>    &rigid,
                  const PopulatedCells<dim> &populated,
                  const Discretization<dim> &discretization,
@@ -76,7 +77,6 @@ namespace impm
     std::vector<double>           coefficients; ///< c_k
 
     std::vector<Obstacle<dim>> obstacles; ///< by pair; unused of bodies
-    Footprints<dim>            prints;    ///< of all points of surfaces
 
   private:
     /** Adds the nodes of a place that touches one cell. */

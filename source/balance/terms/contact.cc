@@ -315,8 +315,7 @@ namespace impm
 
   template <int dim>
   void
-  Contact<dim>::advance(const Vector       &increment,
-                        SurfacePoints<dim> &points) const
+  Contact<dim>::remember_meetings(SurfacePoints<dim> &points) const
   {
     // A point that meets several goes on with the one that presses most.
     std::vector<typename SurfacePoints<dim>::Meeting> meetings(points.size());
@@ -339,20 +338,8 @@ namespace impm
         if (const double slip = state.slip.norm(); slip > most)
           meeting.slip *= most / slip;
       }
-    std::vector<Tensor<1, dim>> ways;
-    all.prints.interpolate(increment, ways);
-    const auto   deformations = all.prints.deformations(increment);
-    unsigned int s            = 0;
-    for (auto &particle : points.sorted.particles)
-      {
-        auto edges = points.edges(s);
-        for (auto &edge : edges)
-          edge = deformations[s] * edge;
-        points.set_edges(s, edges);
-        points.set_meeting(s, meetings[s]);
-        particle.set_location(particle.get_location() + ways[s]);
-        ++s;
-      }
+    for (unsigned int s = 0; s < points.size(); ++s)
+      points.set_meeting(s, meetings[s]);
   }
 
   template class Contact<2>;

@@ -27,30 +27,38 @@ namespace impm
         "Type",
         "free",
         Patterns::Selection("free|fixed|slip|displacement|velocity|"
-                            "normal displacement|normal velocity|traction"),
+                            "normal displacement|normal velocity|traction|"
+                            "pressure"),
         "Of the face of the domain. Slip: no motion through it. "
-        "Traction: only on a Lagrangian grid, which fits the body.");
-      const bool traction = type == "traction";
-      if (traction && !lagrangian)
+        "Traction, pressure: only on a Lagrangian grid, which fits the body; "
+        "elsewhere bodies have them on their surfaces (section Loads).");
+      const bool pressure = type == "pressure";
+      const bool loaded   = type == "traction" || pressure;
+      face.is_pressed     = pressure;
+      if (loaded && !lagrangian)
         section.refuse("Type",
                        "which is for a Lagrangian grid: only there is the face "
                        "of the domain one of the body");
       const bool only_normal = type == "slip" || starts_with(type, "normal ");
-      if (type != "free" && !traction)
+      if (type != "free" && !loaded)
         for (unsigned int d = 0; d < dim; ++d)
           face.constrained[d] = !only_normal || d == normal;
       if (type == "free" || type == "fixed" || type == "slip")
         return;
       section.add("Value",
-                  traction ? face.traction : face.value,
-                  {only_normal ? 1U : dim, in_time},
+                  pressure ? face.pressure :
+                  loaded   ? face.traction :
+                             face.value,
+                  {only_normal || pressure ? 1U : dim, in_time},
                   "Displacement since the start (m), velocity (m/s) or force "
                   "per initial area (Pa): expressions in x, y, z, t, one for "
                   "each direction, between semicolons; a normal one has one, "
-                  "along the axis.");
-      if (traction)
-        return;
+                  "along the axis. A pressure (Pa), which follows the face and "
+                  "points into the body, has one, too, in places as they "
+                  "are.");
       section.require("Value", "are expressions");
+      if (loaded)
+        return;
       face.is_velocity = ends_with(type, "velocity");
       if (!lagrangian)
         section.add("Moves the grid",

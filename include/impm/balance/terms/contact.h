@@ -90,10 +90,9 @@ namespace impm
     double
     work_of_obstacles() const;
 
-    /** Moves points with their surfaces, which keep what they have met. They
-     * are to be sorted next. */
+    /** Lets the points of the surfaces know what they have met. */
     void
-    advance(const Vector &increment, SurfacePoints<dim> &points) const;
+    remember_meetings(SurfacePoints<dim> &points) const;
 
     /** Smallest gap over its layer, of this rank: below 0 where surfaces touch,
      * -1 where a layer is pressed through. */
@@ -104,8 +103,7 @@ namespace impm
     std::size_t
     memory_consumption() const
     {
-      return bytes_of(all.links, all.nodes, all.coefficients, states, bounds) +
-             all.prints.memory_consumption();
+      return bytes_of(all.links, all.nodes, all.coefficients, states, bounds);
     }
 
     const ContactLinks<dim> all;

@@ -36,6 +36,9 @@ namespace impm
     std::shared_ptr<dealii::FunctionParser<dim>> value;
     /** Force per initial area (Pa), or null. */
     std::shared_ptr<dealii::FunctionParser<dim>> traction;
+    /** Into the body, across the face as it is by then (Pa), or null. */
+    std::shared_ptr<dealii::FunctionParser<dim>> pressure;
+    bool is_pressed = false; ///< whether that is one
   };
 
   template <int dim>

@@ -85,8 +85,10 @@ namespace impm
                    points, scene.bodies, footprints, grid, *discretization) :
                  NodalMotion())
     , constraints(scene.faces,
+                  scene.grips,
                   grid,
                   *discretization,
+                  points,
                   rigid,
                   time,
                   dt,

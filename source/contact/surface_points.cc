@@ -38,16 +38,6 @@ namespace impm
       return bits;
     }
 
-    /** Whether a face of the domain holds nothing. */
-    template <int dim>
-    bool
-    is_free(const FaceSpec<dim> &face)
-    {
-      return std::count(face.constrained.begin(),
-                        face.constrained.end(),
-                        true) == 0;
-    }
-
     /** Moves the middle of a piece, which lies on a chord of a curved surface,
      * off it by more than layers that touch give way. */
     template <int dim>
@@ -61,7 +51,8 @@ namespace impm
     }
 
     /** The surface of a body in a cell, and that at the cell on faces of the
-     * domain which the body meets, or which are free while it has loads. */
+     * domain which the body meets, or which let it
+     * through while it has loads. */
     template <int dim, typename Cell>
     std::vector<SurfacePiece<dim>>
     surface_in_cell(const Scene<dim>  &scene,
@@ -86,7 +77,7 @@ namespace impm
         });
       for (unsigned int f = 0; f < 2 * dim; ++f)
         if (cell->at_boundary(f) &&
-            ((has_loads && is_free(scene.faces[f])) ||
+            ((has_loads && !scene.faces[f].constrained[f / 2]) ||
              std::any_of(pairs.begin(), pairs.end(), [&](const auto &pair) {
                return pair.body == b &&
                       pair.partner_kind == PartnerKind::face &&
@@ -265,7 +256,8 @@ namespace impm
                          "found no part of the surface of body '" +
                            scene.bodies[loads[l].body].name +
                            "' where the expression is positive (what lies on a "
-                           "face of the domain counts where that is free)");
+                           "face of the domain does not count where that holds "
+                           "its normal)");
   }
 
   template <int dim>

@@ -1,3 +1,4 @@
+#include <impm/grid/grips.h>
 #include <impm/grid/step_constraints.h>
 
 #include <algorithm>
@@ -43,15 +44,18 @@ namespace impm
 
   template <int dim>
   StepConstraints<dim>::StepConstraints(
-    const Faces<dim>          &faces,
-    const BackgroundGrid<dim> &grid,
-    const Discretization<dim> &discretization,
-    const RigidBodies<dim>    &rigid,
-    const double               time,
-    const double               dt,
-    const Vector              &support,
-    const TouchedNodes<dim>   &touched)
+    const Faces<dim>                 &faces,
+    const std::vector<GripSpec<dim>> &grips,
+    const BackgroundGrid<dim>        &grid,
+    const Discretization<dim>        &discretization,
+    const MaterialPoints<dim>        &points,
+    const RigidBodies<dim>           &rigid,
+    const double                      time,
+    const double                      dt,
+    const Vector                     &support,
+    const TouchedNodes<dim>          &touched)
     : faces(faces)
+    , grips(grips)
     , grid(grid)
     , rigid(rigid)
     , is_constrained(dim * discretization.node_positions.size(), false)
@@ -60,9 +64,10 @@ namespace impm
     , increment(is_constrained.size())
     , discretization(discretization)
   {
-    const Vector carriers = find_carriers(&touched),
-                 walls =
-                   touched.are_all_held() ? carriers : find_carriers(nullptr);
+    const Vector carriers = find_carriers(points, &touched),
+                 walls    = touched.are_all_held() ?
+                              carriers :
+                              find_carriers(points, nullptr);
 
     const auto &masters = discretization.numbering->masters;
     for (unsigned int i = 0; i < is_constrained.size(); ++i)
@@ -71,7 +76,8 @@ namespace impm
         const bool used   = support.local_element(i) > 0;
         const bool held   = carriers.local_element(i) > 0;
         is_constrained[i] = hangs || !used || held;
-        if (walls.local_element(i) > 0)
+        if (walls.local_element(i) > 0 &&
+            walls.local_element(i) <= first_grip())
           wall[i] = static_cast<unsigned int>(walls.local_element(i)) - 1;
         if (hangs || !used || !held)
           continue;
@@ -86,12 +92,16 @@ namespace impm
 
   template <int dim>
   Vector
-  StepConstraints<dim>::find_carriers(const TouchedNodes<dim> *touched) const
+  StepConstraints<dim>::find_carriers(const MaterialPoints<dim> &points,
+                                      const TouchedNodes<dim>   *touched) const
   {
     Vector carriers;
     discretization.initialize(carriers);
     hold_faces(touched, carriers);
     hold_rigid_bodies(carriers);
+    for (unsigned int g = 0; g < grips.size(); ++g)
+      hold_by_grip(
+        grips[g], points, discretization, first_grip() + g + 1, carriers);
     carriers.compress(VectorOperation::max);
     carriers.update_ghost_values();
     return carriers;
@@ -179,6 +189,12 @@ namespace impm
   {
     const unsigned int node = index / dim, component = index % dim;
     const unsigned int face = carrier[index];
+    if (face >= first_grip())
+      return grip_motion(grips[face - first_grip()],
+                         discretization.node_positions[node],
+                         component,
+                         time,
+                         dt);
     if (face >= 2 * dim)
       return rigid.bodies[face - 2 * dim].displacement(time,
                                                        time + dt)[component];
@@ -225,6 +241,15 @@ namespace impm
   }
 
   template <int dim>
+  const std::string &
+  StepConstraints<dim>::name_of(const unsigned int carrier) const
+  {
+    return carrier < 2 * dim      ? faces[carrier].name :
+           carrier < first_grip() ? rigid.bodies[carrier - 2 * dim].spec->name :
+                                    grips[carrier - first_grip()].name;
+  }
+
+  template <int dim>
   double
   StepConstraints<dim>::sum_over(const std::string         &name,
                                  const Vector              &vector,
@@ -232,8 +257,7 @@ namespace impm
   {
     unsigned int wanted = no_carrier;
     for (unsigned int c = 0; c < n_carriers(); ++c)
-      if (name ==
-          (c < 2 * dim ? faces[c].name : rigid.bodies[c - 2 * dim].spec->name))
+      if (name == name_of(c))
         wanted = c;
     double sum = 0;
     for (unsigned int i = 0; i < vector.locally_owned_size(); ++i)

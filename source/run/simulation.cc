@@ -4,6 +4,7 @@
 #include <impm/base/exceptions.h>
 #include <impm/base/files.h>
 #include <impm/footprints/transfer.h>
+#include <impm/grid/grips.h>
 #include <impm/grid/touching.h>
 #include <impm/run/motion_limits.h>
 #include <impm/run/run_directory.h>
@@ -87,7 +88,9 @@ namespace impm
     , reference(scene, points, history)
     , console(verbosity, Utilities::MPI::this_mpi_process(communicator) == 0)
     , warnings(scene.warnings)
-  {}
+  {
+    check_grips(scene.grips, points);
+  }
 
   template <int dim>
   double

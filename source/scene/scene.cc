@@ -94,7 +94,12 @@ namespace impm
       add_bodies(top, scene.bodies, shapes, materials, scene.grid);
       add_adaptation(top, scene.adaptation, scene.grid, scene.bodies);
       scene.grid.finest_level = scene.adaptation.highest;
-      add_boundary_conditions(top, scene.faces, scene.grid, scene.warnings);
+      add_boundary_conditions(top,
+                              scene.faces,
+                              scene.grips,
+                              scene.bodies,
+                              scene.grid,
+                              scene.warnings);
       add_contact(top,
                   scene.contact,
                   scene.bodies,
@@ -114,7 +119,7 @@ namespace impm
                    any_of(scene.faces,
                           [](const auto &face) { return face.is_pressed; }));
       add_stabilization(top, scene.stabilization, scene.time, lagrangian);
-      add_output(top, scene.output, scene.faces, scene.bodies);
+      add_output(top, scene.output, scene.faces, scene.grips, scene.bodies);
       add_references(top, scene.references, parameter_file);
 
       // Nothing else holds what no body and no other shape uses.
@@ -187,6 +192,7 @@ namespace impm
     const bool needs_initial_position =
       // by which they know how far their deformation has drifted
       !scene.grid.is_lagrangian() || scene.loads.body_force_is_initial ||
+      !scene.grips.empty() ||
       any_of(scene.loads.tractions,
              [](const auto &traction) { return traction.is_initial; }) ||
       any_of(scene.output.point_fields,

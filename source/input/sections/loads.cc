@@ -115,8 +115,7 @@ namespace impm
         {1, steady},
         "Expression in x, y, z: the load acts on that part of the "
         "surface whose places at the start make it positive; empty: "
-        "on all of it. What lies on a face of the domain counts where "
-        "that is free.");
+        "on all of it. What lies on a face of the domain does not count where that holds its normal.");
       const bool is_dead = load.kind == SurfaceLoadKind::dead;
       section.add("Value",
                   load.value,

@@ -173,13 +173,16 @@ namespace impm
 
     template <int dim>
     void
-    add_reaction(const Section     &section,
-                 ReactionSpec      &reaction,
-                 const Faces<dim>  &faces,
-                 const Bodies<dim> &bodies)
+    add_reaction(const Section                    &section,
+                 ReactionSpec                     &reaction,
+                 const Faces<dim>                 &faces,
+                 const std::vector<GripSpec<dim>> &grips,
+                 const Bodies<dim>                &bodies)
     {
       reaction.name = section.name;
-      section.add("On", reaction.on, "A face of the domain or a rigid body.");
+      section.add("On",
+                  reaction.on,
+                  "A face of the domain, a rigid body or a grip.");
       std::vector<std::string> carriers;
       for (const auto &face : faces)
         if (std::count(face.constrained.begin(),
@@ -189,6 +192,8 @@ namespace impm
           carriers.push_back(face.name);
       for (const auto &body : names_of_bodies(bodies, true))
         carriers.push_back(body);
+      for (const auto &grip : grips)
+        carriers.push_back(grip.name);
       section.require_name("On", reaction.on, carriers);
       reaction.direction =
         section.numbers("Direction",
@@ -205,10 +210,11 @@ namespace impm
 
   template <int dim>
   void
-  add_output(const Section     &top,
-             OutputSpec        &output,
-             const Faces<dim>  &faces,
-             const Bodies<dim> &bodies)
+  add_output(const Section                    &top,
+             OutputSpec                       &output,
+             const Faces<dim>                 &faces,
+             const std::vector<GripSpec<dim>> &grips,
+             const Bodies<dim>                &bodies)
   {
     const auto section = top.subsection("Output");
     section.add("Directory",
@@ -238,6 +244,7 @@ namespace impm
       add_reaction(section.subsection(name),
                    output.reactions.emplace_back(),
                    faces,
+                   grips,
                    bodies);
   }
 
@@ -258,10 +265,12 @@ namespace impm
   add_output(const Section &,
              OutputSpec &,
              const Faces<2> &,
+             const std::vector<GripSpec<2>> &,
              const Bodies<2> &);
   template void
   add_output(const Section &,
              OutputSpec &,
              const Faces<3> &,
+             const std::vector<GripSpec<3>> &,
              const Bodies<3> &);
 } // namespace impm

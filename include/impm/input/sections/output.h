@@ -63,10 +63,11 @@ namespace impm
 
   template <int dim>
   void
-  add_output(const Section     &top,
-             OutputSpec        &output,
-             const Faces<dim>  &faces,
-             const Bodies<dim> &bodies);
+  add_output(const Section                    &top,
+             OutputSpec                       &output,
+             const Faces<dim>                 &faces,
+             const std::vector<GripSpec<dim>> &grips,
+             const Bodies<dim>                &bodies);
 
   /** Refuses what is no field of the points, in 3D also one of the plane. */
   void

@@ -20,12 +20,13 @@ namespace
     const std::string coordinate = normal == "x" ? "x" : "y";
     const std::string path       = "Loads/" + name + "/";
     return {path + "Body=block",
+            path + "Acts on=points",
             path + "Where=" + coordinate + " - 0.9",
             path + "Normal=" + normal,
             path + "Value=" + value};
   }
 
-  const Overrides pull = {"Loads/Tractions=pull"};
+  const Overrides pull = {"Loads/Tractions=pull", "Loads/pull/Acts on=points"};
 
   template <int dim>
   Tensor<1, dim>

@@ -324,27 +324,45 @@ namespace impm
 
   template <int dim>
   double
-  StepProblem<dim>::reaction(const std::string         &name,
-                             const Vector              &end_forces,
-                             const std::vector<double> &direction) const
+  StepProblem<dim>::reaction(const ReactionSpec &spec,
+                             const Vector       &u,
+                             const Vector       &end_forces) const
   {
-    double force = constraints.sum_over(name, end_forces, direction);
+    Point<dim>     about;
+    RotationVector axis;
+    if (spec.is_moment)
+      {
+        std::copy(spec.about.begin(), spec.about.end(), about.begin_raw());
+        std::copy(spec.direction.begin(),
+                  spec.direction.end(),
+                  axis.begin_raw());
+      }
+    const double of_nodes =
+      spec.is_moment ?
+        constraints.moment_over(spec.on, end_forces, u, about, axis) :
+        constraints.sum_over(spec.on, end_forces, spec.direction);
     if (!contact)
-      return force;
-    Tensor<1, dim> of_contact;
+      return of_nodes;
+    double of_contact = 0;
     for (unsigned int q = 0; q < scene.contact.pairs.size(); ++q)
       {
         const auto &pair = scene.contact.pairs[q];
-        if (pair.partner_kind != PartnerKind::deformable &&
-            name == (pair.partner_kind == PartnerKind::face ?
-                       scene.faces[pair.partner].name :
-                       scene.bodies[pair.partner].name))
-          of_contact -= contact->force_on_partner(q);
+        if (pair.partner_kind == PartnerKind::deformable ||
+            spec.on != (pair.partner_kind == PartnerKind::face ?
+                          scene.faces[pair.partner].name :
+                          scene.bodies[pair.partner].name))
+          continue;
+        if (spec.is_moment)
+          of_contact -= contact->moment_on_partner(q, about) * axis;
+        else
+          {
+            const auto force = contact->force_on_partner(q);
+            for (unsigned int d = 0; d < dim; ++d)
+              of_contact -= force[d] * spec.direction[d];
+          }
       }
-    of_contact = Utilities::MPI::sum(of_contact, discretization->communicator);
-    for (unsigned int d = 0; d < dim; ++d)
-      force += of_contact[d] * direction[d];
-    return force;
+    return of_nodes +
+           Utilities::MPI::sum(of_contact, discretization->communicator);
   }
 
   template <int dim>

@@ -60,6 +60,8 @@ namespace impm
     , increment(is_constrained.size())
     , discretization(discretization)
   {
+    for (const auto &body : rigid.bodies)
+      motions.push_back(body.motion(time, time + dt));
     const Vector carriers = find_carriers(&touched),
                  walls =
                    touched.are_all_held() ? carriers : find_carriers(nullptr);
@@ -179,9 +181,8 @@ namespace impm
   {
     const unsigned int node = index / dim, component = index % dim;
     const unsigned int face = carrier[index];
-    if (face >= 2 * dim)
-      return rigid.bodies[face - 2 * dim].displacement(time,
-                                                       time + dt)[component];
+    if (const auto *motion = motion_of(face))
+      return motion->increment(discretization.node_positions[node])[component];
     const auto &spec = faces[face];
     if (!spec.value)
       return 0;
@@ -225,20 +226,50 @@ namespace impm
   }
 
   template <int dim>
+  unsigned int
+  StepConstraints<dim>::find(const std::string &name) const
+  {
+    for (unsigned int c = 0; c < n_carriers(); ++c)
+      if (name ==
+          (c < 2 * dim ? faces[c].name : rigid.bodies[c - 2 * dim].spec->name))
+        return c;
+    return no_carrier;
+  }
+
+  template <int dim>
   double
   StepConstraints<dim>::sum_over(const std::string         &name,
                                  const Vector              &vector,
                                  const std::vector<double> &direction) const
   {
-    unsigned int wanted = no_carrier;
-    for (unsigned int c = 0; c < n_carriers(); ++c)
-      if (name ==
-          (c < 2 * dim ? faces[c].name : rigid.bodies[c - 2 * dim].spec->name))
-        wanted = c;
-    double sum = 0;
+    const unsigned int wanted = find(name);
+    double             sum    = 0;
     for (unsigned int i = 0; i < vector.locally_owned_size(); ++i)
       if (carrier[i] == wanted)
         sum += vector.local_element(i) * direction[i % dim];
+    return Utilities::MPI::sum(sum, discretization.communicator);
+  }
+
+  template <int dim>
+  double
+  StepConstraints<dim>::moment_over(const std::string    &name,
+                                    const Vector         &vector,
+                                    const Vector         &u,
+                                    const Point<dim>     &about,
+                                    const RotationVector &axis) const
+  {
+    const unsigned int wanted = find(name);
+    double             sum    = 0;
+    for (unsigned int i = 0; i < vector.locally_owned_size(); ++i)
+      if (carrier[i] == wanted)
+        {
+          Tensor<1, dim> arm = discretization.node_positions[i / dim] - about;
+          for (unsigned int d = 0; d < dim; ++d)
+            arm[d] += u.local_element(i - i % dim + d);
+          Tensor<1, dim> force;
+          force[i % dim] = vector.local_element(i);
+          sum += axis * moment_of(arm, force);
+        }
     return Utilities::MPI::sum(sum, discretization.communicator);
   }
 

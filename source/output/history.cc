@@ -290,6 +290,7 @@ namespace impm
   template <int dim>
   void
   History<dim>::take_figures(const StepProblem<dim> &problem,
+                             const Vector           &u,
                              const Vector           &forces)
   {
     potential = problem.response.potential;
@@ -306,8 +307,7 @@ namespace impm
           std::sqrt(std::inner_product(n.begin(), n.end(), n.begin(), 0.));
         // What the carrier exerts balances the material: the force on it is
         // the opposite.
-        reactions[r] =
-          -spec.factor / norm * problem.reaction(spec.on, forces, n);
+        reactions[r] = -spec.factor / norm * problem.reaction(spec, u, forces);
       }
   }
 

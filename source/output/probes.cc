@@ -42,6 +42,21 @@ namespace impm
         consider(square, id);
       return best.second;
     }
+
+    template <int dim>
+    double
+    motion_of(const typename RigidBodies<dim>::Body &body,
+              const ProbeSpec                       &spec,
+              const double                           time)
+    {
+      switch (spec.quantity)
+        {
+          case ProbeSpec::Quantity::rotation:
+            return body.angle(time) * body.spec->axis[spec.component];
+          default:
+            return body.motion(0, time).shift[spec.component];
+        }
+    }
   } // namespace
 
   template <int dim>
@@ -65,8 +80,8 @@ namespace impm
               };
         for (const auto &body : rigid.bodies)
           if (body.spec->name == spec.of)
-            return [&body, component](const double time) {
-              return body.displacement(0, time)[component];
+            return [&body, &spec](const double time) {
+              return motion_of<dim>(body, spec, time);
             };
       }
 

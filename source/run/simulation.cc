@@ -366,7 +366,7 @@ namespace impm
     report.stabilization_work = work.stabilization;
     report.uncertain_work     = work.uncertain;
     watch_contact();
-    history.take_figures(*problem, end_forces);
+    history.take_figures(*problem, result.increment, end_forces);
     watch_faces();
     // While points are in the order of their footprints.
     if (row_is_due(report.step, time + report.dt))

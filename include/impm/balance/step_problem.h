@@ -99,13 +99,13 @@ namespace impm
                0.;
     }
 
-    /** Component along `direction` of what a face or a rigid body, by its name,
-     * exerts by what it holds, in end_forces(), and by contact (N). Collective.
-     */
+    /** What a face or a rigid body exerts by what it holds, in end_forces(),
+     * and by contact (N), or its moment (N m), along a direction as it is
+     * given; after a step that has converged at `u`. Collective. */
     double
-    reaction(const std::string         &name,
-             const Vector              &end_forces,
-             const std::vector<double> &direction) const;
+    reaction(const ReactionSpec &spec,
+             const Vector       &u,
+             const Vector       &end_forces) const;
 
     /** Those of the terms that are no physics: ghost penalty, springs of pieces
      * that nothing holds and of damping. */

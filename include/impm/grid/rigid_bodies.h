@@ -3,6 +3,7 @@
 
 #include <deal.II/base/bounding_box.h>
 
+#include <impm/grid/rigid_motion.h>
 #include <impm/points/material_points.h>
 
 #include <memory>
@@ -30,13 +31,18 @@ namespace impm
 
     struct Body
     {
-      /** Displacement from one time to another (m). */
-      dealii::Tensor<1, dim>
-      displacement(double from, double to) const;
+      /** From one time to another. */
+      RigidMotion<dim>
+      motion(double from, double to) const;
+
+      /** Turn about its axis since the start (rad). */
+      double
+      angle(double time) const;
 
       const BodySpec<dim>                  *spec;
       std::unique_ptr<SortedParticles<dim>> points;
       dealii::BoundingBox<dim> box; ///< at the start, to a Lagrangian grid
+      double radius = 0; ///< of a ball about the centre that has all points (m)
     };
 
     /**
@@ -51,7 +57,8 @@ namespace impm
     void
     sort();
 
-    /** Largest component of any displacement from one time to another (m). */
+    /** Bound of the components of the ways of all points from one time to
+     * another (m). */
     double
     largest_displacement(double from, double to) const;
 

@@ -102,10 +102,12 @@ namespace impm
     void
     open(const std::string &directory, bool goes_on = false);
 
-    /** What the points do not tell of a step when they have moved, with its
-     * StepProblem::end_forces(). Collective. */
+    /** What the points do not tell of a step, that has converged at `u`, when
+     * they have moved, with its StepProblem::end_forces(). Collective. */
     void
-    take_figures(const StepProblem<dim> &problem, const Vector &forces);
+    take_figures(const StepProblem<dim> &problem,
+                 const Vector           &u,
+                 const Vector           &forces);
 
     /**
      * Adds a row, after the points have moved, on all that happened since the

@@ -52,12 +52,12 @@ namespace impm
         state.curved   = -state.pressure * curvature;
       }
 
-    state.slip -= (state.slip * link.normal) * link.normal;
+    state.slip -= (state.slip * normals[l]) * normals[l];
     if (const double bound = bounds[l]; bound > 0)
       {
         const double c = friction_stiffness * k, slip = state.slip.norm();
         const auto   along = unit_symmetric_tensor<dim>() -
-                           symmetrize(outer_product(link.normal, link.normal));
+                           symmetrize(outer_product(normals[l], normals[l]));
         state.friction = std::min(c * slip, bound);
         if (c * slip <= bound)
           {
@@ -79,16 +79,42 @@ namespace impm
   }
 
   template <int dim>
-  Tensor<1, dim>
-  Contact<dim>::way_of(const ContactLink<dim> &link, const Vector &u) const
+  typename Contact<dim>::State
+  Contact<dim>::state_after(const unsigned int    l,
+                            const Tensor<1, dim> &increment) const
   {
-    Tensor<1, dim> way;
+    const auto          &link   = all.links[l];
+    const Point<dim>     place  = link.place + increment;
+    const auto          &motion = motions[link.pair];
+    const Tensor<1, dim> carried =
+      link.obstacle != nullptr ? motion.increment_to(place) : Tensor<1, dim>();
+    auto state    = state_at(l, increment - carried);
+    state.place   = place;
+    state.carried = carried;
+    if (motion.turns())
+      {
+        const auto R    = motion.rotation();
+        const auto turn = [&](const SymmetricTensor<2, dim> &tangent) {
+          return symmetrize(R * Tensor<2, dim>(tangent) * transpose(R));
+        };
+        state.gradient = R * state.gradient;
+        state.tangent  = turn(state.tangent);
+        state.curved   = turn(state.curved);
+        state.slip     = R * state.slip;
+      }
+    return state;
+  }
+
+  template <int dim>
+  Tensor<1, dim>
+  Contact<dim>::increment_of(const ContactLink<dim> &link,
+                             const Vector           &u) const
+  {
+    Tensor<1, dim> sum;
     for (unsigned int k = link.begin; k < link.end; ++k)
       for (unsigned int c = 0; c < dim; ++c)
-        way[c] += all.coefficients[k] * u.local_element(dim * all.nodes[k] + c);
-    if (link.obstacle != nullptr)
-      way -= link.obstacle->displacement;
-    return way;
+        sum[c] += all.coefficients[k] * u.local_element(dim * all.nodes[k] + c);
+    return sum;
   }
 
   template <int dim>
@@ -97,7 +123,12 @@ namespace impm
     , states(all.links.size())
   {
     for (const auto &link : all.links)
-      bounds.push_back(link.friction_bound);
+      {
+        bounds.push_back(link.friction_bound);
+        normals.push_back(link.normal);
+      }
+    for (const auto &obstacle : all.obstacles)
+      motions.push_back(obstacle.motion);
   }
 
   template <int dim>
@@ -105,7 +136,7 @@ namespace impm
   Contact<dim>::evaluate(const Vector &u, const bool /*with_tangent*/)
   {
     for (unsigned int l = 0; l < states.size(); ++l)
-      states[l] = state_at(l, way_of(all.links[l], u));
+      states[l] = state_after(l, increment_of(all.links[l], u));
     return true;
   }
 
@@ -178,13 +209,11 @@ namespace impm
   {
     for (unsigned int l = 0; l < states.size(); ++l)
       {
-        const auto    &link = all.links[l];
-        Tensor<1, dim> way;
-        for (unsigned int k = link.begin; k < link.end; ++k)
-          for (unsigned int c = 0; c < dim; ++c)
-            way[c] += all.coefficients[k] *
-                      direction.local_element(dim * all.nodes[k] + c);
-        add(l, (states[l].tangent + states[l].curved) * way, image);
+        const auto &link = all.links[l];
+        add(l,
+            (states[l].tangent + states[l].curved) *
+              increment_of(link, direction),
+            image);
       }
   }
 
@@ -237,6 +266,17 @@ namespace impm
         sums[0] += link.area * std::abs(bound - bounds[l]);
         sums[1] += link.area * bound;
         bounds[l] = bound;
+        if (bound == 0 || link.obstacle == nullptr ||
+            !motions[link.pair].turns())
+          continue;
+        const auto &state = states[l];
+        const auto  normal =
+          link.obstacle->proximity(state.place - state.carried).normal;
+        // Where it is another side of the body, it would go to and fro.
+        if (normal * normals[l] < 0.5)
+          continue;
+        sums[0] += link.area * bound * (normal - normals[l]).norm();
+        normals[l] = normal;
       }
     Utilities::MPI::sum(sums, communicator, sums);
     return sums[0] > tolerance * sums[1];
@@ -262,6 +302,19 @@ namespace impm
       if (all.links[l].pair == pair)
         force += all.links[l].area * states[l].gradient;
     return force;
+  }
+
+  template <int dim>
+  RotationVector
+  Contact<dim>::moment_on_partner(const unsigned int pair,
+                                  const Point<dim>  &about) const
+  {
+    RotationVector moment;
+    for (unsigned int l = 0; l < states.size(); ++l)
+      if (all.links[l].pair == pair)
+        moment += all.links[l].area *
+                  moment_of<dim>(states[l].place - about, states[l].gradient);
+    return moment;
   }
 
   template <int dim>
@@ -297,8 +350,9 @@ namespace impm
     for (unsigned int l = 0; l < states.size(); ++l)
       if (const auto &link = all.links[l]; link.obstacle != nullptr)
         work -= 0.5 * link.area *
-                (states[l].gradient + state_at(l, Tensor<1, dim>()).gradient) *
-                link.obstacle->displacement;
+                (states[l].gradient * states[l].carried +
+                 state_at(l, Tensor<1, dim>()).gradient *
+                   motions[link.pair].increment(link.place));
     return work;
   }
 

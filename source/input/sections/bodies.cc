@@ -1,5 +1,6 @@
 #include <impm/input/sections/bodies.h>
 #include <impm/input/sections/boundary_conditions.h>
+#include <impm/input/sections/geometry.h>
 #include <impm/input/sections/time.h>
 
 #include <boost/range/adaptor/map.hpp>
@@ -214,6 +215,53 @@ namespace impm
                        "surface");
     }
 
+    /** A turn that is prescribed beside the displacement. */
+    template <int dim>
+    void
+    add_rotation(const Section       &section,
+                 BodySpec<dim>       &body,
+                 const GridSpec<dim> &grid)
+    {
+      section.add("Rotation",
+                  body.rotation,
+                  {1, in_time},
+                  "Turn since the start (rad), an expression in t: in the "
+                  "plane from x to y, in space about an axis; empty: none.");
+      if (section.get("Rotation").empty())
+        return;
+      if (is_axisymmetric(section.chosen))
+        section.refuse("Rotation",
+                       "allowed in axisymmetry, where nothing turns in the "
+                       "half plane, is none");
+      if (grid.is_lagrangian())
+        section.refuse("Rotation",
+                       "allowed on a Lagrangian grid, whose nodes stick to "
+                       "boxes, is none");
+      if (body.slip_normal < dim)
+        section.refuse("Rotation",
+                       "allowed with 'Contact = slip', which holds nodes in a "
+                       "direction of the grid, is none");
+      const auto centre =
+        section.numbers("Centre",
+                        dim,
+                        "About which it turns, at the start (m). It moves with "
+                        "the displacement.");
+      std::copy(centre.begin(), centre.end(), body.centre.begin_raw());
+      body.axis = dealii::Tensor<1, 3>({0, 0, 1});
+      if (dim == 2)
+        return;
+      const auto axis = section.numbers("Axis",
+                                        3,
+                                        "Direction about which it turns, "
+                                        "right-handed, of any length.",
+                                        "0, 0, 1");
+      std::copy(axis.begin(), axis.end(), body.axis.begin_raw());
+      if (body.axis.norm() == 0)
+        section.refuse("Axis", "allowed is a vector that is not zero");
+      else
+        body.axis /= body.axis.norm();
+    }
+
     template <int dim>
     void
     add_body(const Section          &section,
@@ -249,6 +297,7 @@ namespace impm
                   {dim, in_time},
                   "Since the start (m): expressions in t, one for each "
                   "direction, between semicolons.");
+      add_rotation(section, body, grid);
     }
   } // namespace
 

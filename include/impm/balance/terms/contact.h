@@ -33,7 +33,9 @@ namespace impm
    * agree. What is beyond the bound is dissipated.
    *
    * Normals of obstacles are those where points come to; of other bodies, those
-   * at the start of the step.
+   * at the start of the step. Friction acts along the surface at the start, on
+   * an obstacle that turns where the last solution has brought the point: that
+   * is renewed with its bound.
    */
   template <int dim>
   class Contact : public Term
@@ -65,9 +67,9 @@ namespace impm
     void
     project_tangent() override;
 
-    /** Takes the bounds of friction from the pressures of the state; returns
-     * whether they have changed so much that the step is to be solved anew.
-     * Collective. */
+    /** Takes the bounds of friction, and on what turns its directions, from
+     * the state; returns whether they have changed so much that the step is to
+     * be solved anew. Collective. */
     bool
     renew_friction(MPI_Comm communicator);
 
@@ -80,6 +82,10 @@ namespace impm
      * of this rank. */
     dealii::Tensor<1, dim>
     force_on_partner(unsigned int pair) const;
+
+    /** Its moment about a point (N m), at the places of the state. */
+    RotationVector
+    moment_on_partner(unsigned int pair, const dealii::Point<dim> &about) const;
 
     /** Of a pair of the scene, in the state. Collective. */
     ContactFigures
@@ -111,9 +117,11 @@ namespace impm
     const ContactLinks<dim> all;
 
   private:
-    /** Of a link, at an increment. */
+    /** Of a link, at an increment. Directions are those of space. */
     struct State
     {
+      dealii::Point<dim>     place;      ///< (m)
+      dealii::Tensor<1, dim> carried;    ///< way of the obstacle there (m)
       double                 energy = 0; ///< per area (J/m^2)
       dealii::Tensor<1, dim> gradient;   ///< on the partner (Pa)
       /** Derivative of the gradient but for the curvature of obstacles, and
@@ -126,8 +134,14 @@ namespace impm
       dealii::Tensor<1, dim> slip;
     };
 
+    /** After a way along the other surface, as seen from there. */
     State
     state_at(unsigned int link, const dealii::Tensor<1, dim> &way) const;
+
+    /** After an increment of the point, or of what is faced less than that. */
+    State
+    state_after(unsigned int                  link,
+                const dealii::Tensor<1, dim> &increment) const;
 
     /** Adds a gradient at the nodes of a link. */
     void
@@ -137,10 +151,13 @@ namespace impm
 
     /** sum_k c_k u_k (m). */
     dealii::Tensor<1, dim>
-    way_of(const ContactLink<dim> &link, const Vector &u) const;
+    increment_of(const ContactLink<dim> &link, const Vector &u) const;
 
     std::vector<State>  states;
     std::vector<double> bounds; ///< of friction (Pa)
+    /** Across which it acts, as an obstacle is at the start of the step. */
+    std::vector<dealii::Tensor<1, dim>> normals;
+    std::vector<RigidMotion<dim>>       motions; ///< of obstacles, by pair
   };
 } // namespace impm
 

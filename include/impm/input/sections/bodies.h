@@ -50,6 +50,11 @@ namespace impm
 
     /** Of a rigid body: displacement since t = 0 as a function of time. */
     std::shared_ptr<dealii::FunctionParser<1>> displacement;
+    /** Likewise: turn (rad) about a centre, which moves with it, and an axis of
+     * length one. Null: none. */
+    std::shared_ptr<dealii::FunctionParser<1>> rotation;
+    dealii::Point<dim>                         centre; ///< at the start (m)
+    dealii::Tensor<1, 3>                       axis;
     /** Direction in which alone a rigid body holds its nodes; dim: in all. */
     unsigned int slip_normal = dim;
     /** A rigid body that has no points and holds none, but meets surfaces (see

@@ -41,6 +41,15 @@ namespace impm
       return motion;
     }
 
+    template <int dim>
+    bool
+    has_free_bodies(const RigidBodies<dim> &rigid)
+    {
+      return std::any_of(rigid.bodies.begin(),
+                         rigid.bodies.end(),
+                         [](const auto &body) { return body.spec->is_free; });
+    }
+
     /** A scene has the terms that it needs and no others. */
     std::vector<Term *>
     those_that_are(std::vector<Term *> terms)
@@ -126,17 +135,25 @@ namespace impm
                                            time,
                                            time + dt) :
               nullptr)
-    , contact(surfaces ? std::make_unique<Contact<dim>>(
-                           ContactLinks<dim>(scene,
-                                             grid,
-                                             *surfaces,
-                                             rigid,
-                                             populated,
-                                             *discretization,
-                                             builder,
-                                             time,
-                                             dt)) :
-                         nullptr)
+    , free_bodies(
+        has_free_bodies(rigid) ?
+          std::make_unique<FreeBodies<dim>>(
+            rigid, scene.loads, scene.geometry, integrator, time, dt) :
+          nullptr)
+    , contact(
+        surfaces ?
+          std::make_unique<Contact<dim>>(ContactLinks<dim>(scene,
+                                                           grid,
+                                                           *surfaces,
+                                                           rigid,
+                                                           populated,
+                                                           *discretization,
+                                                           builder,
+                                                           time,
+                                                           dt),
+                                         free_bodies.get(),
+                                         grid.communicator) :
+          nullptr)
     , start_forces(find_start_forces())
     , start_acceleration(find_start_acceleration())
     , nodal_forces(make_nodal_forces(points,
@@ -169,7 +186,9 @@ namespace impm
                              return body.rigid ||
                                     body.material->has_potential();
                            }) &&
-                 !integrator.has_stress_in_the_middle(),
+                 !integrator.has_stress_in_the_middle() &&
+                 // Turns in space have a potential up to their squares only.
+                 !(free_bodies && dim == 3),
                scene.geometry != GeometryKind::axisymmetric},
               counts)
   {

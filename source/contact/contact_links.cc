@@ -35,17 +35,23 @@ namespace impm
                   const double               dt)
     {
       Obstacle<dim> obstacle;
+      unsigned int  n_free = 0;
       if (pair.partner_kind == PartnerKind::rigid)
         for (const auto &body : rigid.bodies)
-          if (body.spec == &scene.bodies[pair.partner])
-            {
-              obstacle.motion    = body.motion(time, time + dt);
-              obstacle.proximity = [before = body.motion(0, time),
-                                    &shape =
-                                      *body.spec->shape](const Point<dim> &x) {
-                return turn(before, shape.proximity(before.inverse(x)));
-              };
-            }
+          {
+            if (body.spec == &scene.bodies[pair.partner])
+              {
+                obstacle.motion = body.in_step(time, dt);
+                obstacle.proximity =
+                  [before = body.since_start(time),
+                   &shape = *body.spec->shape](const Point<dim> &x) {
+                    return turn(before, shape.proximity(before.inverse(x)));
+                  };
+                if (body.spec->is_free)
+                  obstacle.free_body = n_free;
+              }
+            n_free += body.spec->is_free;
+          }
       if (pair.partner_kind == PartnerKind::face)
         {
           const unsigned int face = pair.partner, d = face / 2;

@@ -194,7 +194,7 @@ namespace impm
       for (const auto &body : state.rigid.bodies)
         if (body.spec->name == criterion.of && body.spec->meets_surfaces)
           {
-            const auto motion = body.motion(0, state.time);
+            const auto motion = body.since_start(state.time);
             for_owned_cells<dim>(state, [&](const auto &cell) {
               const auto   box    = box_of<dim>(cell);
               const double radius = box.center().distance(box.vertex(0));

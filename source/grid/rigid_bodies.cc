@@ -49,7 +49,12 @@ namespace impm
           bodies.push_back({&spec,
                             std::move(points),
                             box,
-                            Utilities::MPI::max(radius, grid.communicator)});
+                            Utilities::MPI::max(radius, grid.communicator),
+                            {}});
+          auto &state              = bodies.back().state;
+          state.since_start.centre = spec.centre;
+          state.velocity           = spec.free_velocity;
+          state.spin               = spec.free_spin;
         }
     if (grid.is_lagrangian)
       holders_of_nodes.resize(grid.discretization()->node_positions.size());
@@ -77,6 +82,36 @@ namespace impm
           centre[d] += start;
         }
     return {centre, shift, (angle(to) - angle(from)) * spec->axis};
+  }
+
+  template <int dim>
+  RigidMotion<dim>
+  RigidBodies<dim>::Body::since_start(const double time) const
+  {
+    return spec->is_free ? state.since_start : motion(0, time);
+  }
+
+  template <int dim>
+  RigidMotion<dim>
+  RigidBodies<dim>::Body::in_step(const double time, const double dt) const
+  {
+    if (!spec->is_free)
+      return motion(time, time + dt);
+    const auto &now = state.since_start;
+    return {now.centre + now.shift,
+            dt * state.velocity,
+            dt * state.angular_velocity()};
+  }
+
+  template <int dim>
+  double
+  RigidBodies<dim>::largest_speed() const
+  {
+    double largest = 0;
+    for (const auto &body : bodies)
+      if (body.spec->is_free)
+        largest = std::max(largest, body.state.velocity.norm());
+    return largest;
   }
 
   template <int dim>

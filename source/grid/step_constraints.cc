@@ -61,7 +61,7 @@ namespace impm
     , discretization(discretization)
   {
     for (const auto &body : rigid.bodies)
-      motions.push_back(body.motion(time, time + dt));
+      motions.push_back(body.in_step(time, dt));
     const Vector carriers = find_carriers(&touched),
                  walls =
                    touched.are_all_held() ? carriers : find_carriers(nullptr);

@@ -49,12 +49,20 @@ namespace impm
               const ProbeSpec                       &spec,
               const double                           time)
     {
+      const unsigned int c       = spec.component;
+      const bool         is_free = body.spec->is_free;
       switch (spec.quantity)
         {
+          case ProbeSpec::Quantity::velocity:
+            return body.state.velocity[c];
+          case ProbeSpec::Quantity::angular_velocity:
+            return body.state.angular_velocity()[c];
           case ProbeSpec::Quantity::rotation:
-            return body.angle(time) * body.spec->axis[spec.component];
+            return !is_free ? body.angle(time) * body.spec->axis[c] :
+                   dim == 2 ? body.state.angles[c] :
+                              body.state.since_start.rotation_vector()[c];
           default:
-            return body.motion(0, time).shift[spec.component];
+            return body.since_start(time).shift[c];
         }
     }
   } // namespace

@@ -94,7 +94,8 @@ namespace impm
   double
   Simulation<dim>::cfl_unit() const
   {
-    return grid.discretization()->smallest_cell_extent / points.largest_speed();
+    return grid.discretization()->smallest_cell_extent /
+           std::max(points.largest_speed(), rigid.largest_speed());
   }
 
   template <int dim>
@@ -401,6 +402,8 @@ namespace impm
     if (surfaces)
       problem->contact->advance(result.increment, *surfaces);
     policy->advance(grid, result, time, end);
+    if (problem->free_bodies)
+      problem->free_bodies->advance(rigid);
     rigid.move(time, end);
     if (is_off_grid() && off_grid.n_steps++ == 0)
       off_grid.start = time;

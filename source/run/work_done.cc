@@ -61,6 +61,8 @@ namespace impm
         step.contact =
           Utilities::MPI::sum(problem.contact->energy_gain(), comm);
       }
+    if (problem.free_bodies && Utilities::MPI::this_mpi_process(comm) == 0)
+      work += problem.free_bodies->work();
     Utilities::MPI::sum(sums, comm, sums);
     Utilities::MPI::sum(moments, comm, moments);
     step.external    = Utilities::MPI::sum(work, comm);

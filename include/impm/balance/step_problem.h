@@ -32,6 +32,9 @@ namespace impm
   class Contact;
 
   template <int dim>
+  class FreeBodies;
+
+  template <int dim>
   class SurfacePoints;
 
   /**
@@ -142,7 +145,9 @@ namespace impm
     const std::unique_ptr<InternalForces<dim>> internal_forces;
     const std::unique_ptr<GhostPenalty<dim>>   ghost_penalty;
     const std::unique_ptr<Loads<dim>>          loads;
-    const std::unique_ptr<Contact<dim>>        contact;
+    /** Which contact moves, or null. */
+    const std::unique_ptr<FreeBodies<dim>> free_bodies;
+    const std::unique_ptr<Contact<dim>>    contact;
 
     const Vector start_forces; ///< f(0) (N), if asked for, or empty
     /** What the integrator takes for the acceleration at the start: gathered,

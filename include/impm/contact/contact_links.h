@@ -9,6 +9,7 @@
 #include <impm/scene/scene.h>
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 namespace impm
@@ -19,7 +20,9 @@ namespace impm
   {
     /** Of a place, to where it is at the start of the step. */
     std::function<Proximity<dim>(const dealii::Point<dim> &)> proximity;
-    RigidMotion<dim> motion; ///< in the step
+    RigidMotion<dim> motion; ///< in the step; of a free body a guess
+    /** Among the free bodies of the scene, if it is one. */
+    std::optional<unsigned int> free_body;
   };
 
   /**

@@ -156,6 +156,36 @@ namespace impm
     dealii::Tensor<1, dim> shift;   ///< of the centre (m)
     dealii::Tensor<2, dim> turning; ///< R - 1
   };
+
+  /** Of axes that a motion turns to those of space. */
+  template <int dim>
+  RotationVector
+  in_space(const RigidMotion<dim> &motion, const RotationVector &vector)
+  {
+    if constexpr (dim == 3)
+      return motion.turn(vector);
+    return vector;
+  }
+
+  /** Of axes of space to those that it turns. */
+  template <int dim>
+  RotationVector
+  in_body(const RigidMotion<dim> &motion, const RotationVector &vector)
+  {
+    if constexpr (dim == 3)
+      return vector + transpose(motion.turning) * vector;
+    return vector;
+  }
+
+  /** One after another, which starts where the first ends. */
+  template <int dim>
+  RigidMotion<dim>
+  chain(const RigidMotion<dim> &first, const RigidMotion<dim> &second)
+  {
+    return {first.centre,
+            second(first.centre + first.shift) - first.centre,
+            first.turning + second.turning + second.turning * first.turning};
+  }
 } // namespace impm
 
 #endif

@@ -63,7 +63,7 @@ namespace impm
     }
   };
 
-  /** Sums over all points. */
+  /** Sums over all points, and over free rigid bodies. */
   template <int dim>
   struct Totals
   {
@@ -79,6 +79,11 @@ namespace impm
   Totals<dim>
   total(const MaterialPoints<dim>  &points,
         const std::optional<double> strain_energy = {});
+
+  /** What free rigid bodies add. */
+  template <int dim>
+  void
+  add(const RigidBodies<dim> &rigid, Totals<dim> &totals);
 
   /** history.csv: a header line, then rows, each on disk at once. */
   template <int dim>
@@ -171,6 +176,7 @@ namespace impm
     const OutputSpec              &output;
     const Bodies<dim>             &bodies;
     const MaterialPoints<dim>     &points;
+    const RigidBodies<dim>        &rigid;
     const BackgroundGrid<dim>     &grid;
     PointsPerCell                  density;
     const std::vector<std::string> names; ///< of columns

@@ -118,26 +118,191 @@ namespace impm
   }
 
   template <int dim>
-  Contact<dim>::Contact(ContactLinks<dim> links)
+  Contact<dim>::Contact(ContactLinks<dim>      links,
+                        FreeBodies<dim> *const free,
+                        const MPI_Comm         comm)
     : all(std::move(links))
     , states(all.links.size())
+    , free(free)
+    , communicator(comm)
   {
     for (const auto &link : all.links)
       {
         bounds.push_back(link.friction_bound);
         normals.push_back(link.normal);
       }
-    for (const auto &obstacle : all.obstacles)
-      motions.push_back(obstacle.motion);
+    motions.resize(all.obstacles.size());
+    if (free != nullptr)
+      {
+        // Nothing has moved yet.
+        for (unsigned int q = 0; q < motions.size(); ++q)
+          motions[q].centre = all.obstacles[q].motion.centre;
+        for (unsigned int l = 0; l < states.size(); ++l)
+          states[l] = state_after(l, Tensor<1, dim>());
+        free->begin(loads_on_free_bodies());
+      }
+    for (unsigned int q = 0; q < motions.size(); ++q)
+      motions[q] = all.obstacles[q].motion;
   }
 
   template <int dim>
   bool
   Contact<dim>::evaluate(const Vector &u, const bool /*with_tangent*/)
   {
+    std::vector<Tensor<1, dim>> increments;
+    for (const auto &link : all.links)
+      increments.push_back(increment_of(link, u));
+    if (free != nullptr)
+      return settle(increments);
     for (unsigned int l = 0; l < states.size(); ++l)
-      states[l] = state_after(l, increment_of(all.links[l], u));
+      states[l] = state_after(l, increments[l]);
     return true;
+  }
+
+  template <int dim>
+  bool
+  Contact<dim>::settle(const std::vector<Tensor<1, dim>> &increments)
+  {
+    const unsigned int most = 100;
+    free->restart();
+    for (unsigned int i = 0; i < most; ++i)
+      {
+        for (unsigned int q = 0; q < motions.size(); ++q)
+          if (const auto &body = all.obstacles[q].free_body)
+            motions[q] = free->motion(*body);
+        for (unsigned int l = 0; l < states.size(); ++l)
+          if (i == 0 || all.obstacles[all.links[l].pair].free_body)
+            states[l] = state_after(l, increments[l]);
+        if (free->improve(loads_on_free_bodies()))
+          return true;
+      }
+    return false;
+  }
+
+  template <int dim>
+  Tensor<1, dim>
+  Contact<dim>::change_by(const unsigned int l, const unsigned int c) const
+  {
+    const auto &state   = states[l];
+    const auto  tangent = state.tangent + state.curved;
+    if (c < dim)
+      {
+        Tensor<1, dim> unit;
+        unit[c] = 1;
+        return -(tangent * unit);
+      }
+    RotationVector axis;
+    axis[c - dim]      = 1;
+    const auto &motion = motions[all.links[l].pair];
+    const auto  arm    = state.place - (motion.centre + motion.shift);
+    return cross(axis, state.gradient) - tangent * cross(axis, arm);
+  }
+
+  template <int dim>
+  std::vector<typename FreeBodies<dim>::Load>
+  Contact<dim>::loads_on_free_bodies() const
+  {
+    using Bodies                     = FreeBodies<dim>;
+    constexpr unsigned int n         = Bodies::n_components;
+    constexpr unsigned int n_numbers = n * (n + 1) + 4;
+    std::vector<double>    sums(free->size() * n_numbers);
+    for (unsigned int l = 0; l < states.size(); ++l)
+      {
+        const auto &link  = all.links[l];
+        const auto &state = states[l];
+        const auto &body  = all.obstacles[link.pair].free_body;
+        if (!body || state.tangent.norm() == 0)
+          continue;
+        const auto          &motion = motions[link.pair];
+        const Tensor<1, dim> arm = state.place - (motion.centre + motion.shift);
+        double              *sum = &sums[*body * n_numbers];
+        const auto           add = [&](const Tensor<1, dim> &force,
+                             const RotationVector &moment) {
+          for (unsigned int d = 0; d < dim; ++d)
+            *sum++ += link.area * force[d];
+          for (unsigned int d = 0; d < 3; ++d)
+            *sum++ += link.area * moment[d];
+        };
+        add(state.gradient, moment_of<dim>(arm, state.gradient));
+        for (unsigned int c = 0; c < n; ++c)
+          {
+            // The centre moves under what pushes where it is.
+            const auto change = change_by(l, c);
+            auto       moment = moment_of<dim>(arm, change);
+            if (c < dim)
+              {
+                Tensor<1, dim> unit;
+                unit[c] = 1;
+                moment -= moment_of<dim>(unit, state.gradient);
+              }
+            add(change, moment);
+          }
+        const double force = link.area * state.gradient.norm();
+        const double noise = 16 * std::numeric_limits<double>::epsilon() *
+                             link.area * link.stiffness * state.place.norm();
+        for (const double number :
+             {force, force * arm.norm(), noise, noise * arm.norm()})
+          *sum++ += number;
+      }
+    Utilities::MPI::sum(sums, communicator, sums);
+    std::vector<typename Bodies::Load> loads(free->size());
+    const double                      *sum = sums.data();
+    for (auto &load : loads)
+      {
+        for (unsigned int i = 0; i < n; ++i)
+          load.value[i] = *sum++;
+        for (unsigned int c = 0; c < n; ++c)
+          for (unsigned int i = 0; i < n; ++i)
+            load.derivative[i][c] = *sum++;
+        for (double *number :
+             {&load.force, &load.moment, &load.force_noise, &load.moment_noise})
+          *number = *sum++;
+      }
+    return loads;
+  }
+
+  template <int dim>
+  void
+  Contact<dim>::add_correction(const Vector &like, LowRank &correction) const
+  {
+    if (free == nullptr)
+      return;
+    const auto loads = loads_on_free_bodies();
+    for (unsigned int b = 0; b < loads.size(); ++b)
+      {
+        if (loads[b].derivative.norm() == 0)
+          continue; // nothing is near
+        const auto         compliance = free->compliance(b, loads[b]);
+        const unsigned int first      = correction.left.size(),
+                           n          = free->unknowns.size();
+        for (auto *vectors : {&correction.left, &correction.right})
+          for (unsigned int i = 0; i < n; ++i)
+            {
+              vectors->emplace_back();
+              vectors->back().reinit(like);
+            }
+        for (unsigned int l = 0; l < states.size(); ++l)
+          {
+            const auto &link = all.links[l];
+            if (all.obstacles[link.pair].free_body != b ||
+                states[l].tangent.norm() == 0)
+              continue;
+            std::array<Tensor<1, dim>, FreeBodies<dim>::n_components> changes;
+            for (unsigned int c = 0; c < changes.size(); ++c)
+              changes[c] = change_by(l, c);
+            for (unsigned int i = 0; i < n; ++i)
+              {
+                // What moves the body changes the load as if the point
+                // went the other way.
+                const auto     right = -changes[free->unknowns[i]];
+                Tensor<1, dim> left;
+                for (const unsigned int j : free->unknowns)
+                  left += compliance[j][free->unknowns[i]] * changes[j];
+                add(l, left, correction.left[first + i]);
+                add(l, right, correction.right[first + i]);
+              }
+          }
+      }
   }
 
   template <int dim>
@@ -176,6 +341,8 @@ namespace impm
     double sum = 0;
     for (unsigned int l = 0; l < states.size(); ++l)
       sum += all.links[l].area * states[l].energy;
+    if (free != nullptr && Utilities::MPI::this_mpi_process(communicator) == 0)
+      sum += free->potential();
     return sum;
   }
 
@@ -348,7 +515,8 @@ namespace impm
   {
     double work = 0;
     for (unsigned int l = 0; l < states.size(); ++l)
-      if (const auto &link = all.links[l]; link.obstacle != nullptr)
+      if (const auto &link = all.links[l];
+          link.obstacle != nullptr && !link.obstacle->free_body)
         work -= 0.5 * link.area *
                 (states[l].gradient * states[l].carried +
                  state_at(l, Tensor<1, dim>()).gradient *

@@ -124,13 +124,25 @@ namespace impm
       section.add("Quantity",
                   probe.quantity,
                   {{"displacement", Quantity::displacement},
-                   {"rotation", Quantity::rotation}},
+                   {"velocity", Quantity::velocity},
+                   {"rotation", Quantity::rotation},
+                   {"angular velocity", Quantity::angular_velocity}},
                   "Displacement: of a face, or of the centre of a rigid body "
-                  "(m). Rotation: of a rigid body (rad).");
-      const auto &rigid = names_of_bodies(bodies, true);
-      if (probe.quantity != Quantity::displacement &&
-          std::count(rigid.begin(), rigid.end(), probe.of) == 0)
+                  "(m). Rotation: of a rigid body (rad; in space of a free "
+                  "one, the vector, up to half a turn). Velocity (m/s), "
+                  "angular velocity (rad/s): of a free rigid body.");
+      const auto body =
+        std::find_if(bodies.begin(), bodies.end(), [&](const auto &one) {
+          return one.name == probe.of;
+        });
+      if (probe.quantity != Quantity::displacement && body == bodies.end())
         section.refuse("Quantity", "allowed for a face is displacement");
+      if ((probe.quantity == Quantity::velocity ||
+           probe.quantity == Quantity::angular_velocity) &&
+          body != bodies.end() && !body->is_free)
+        section.refuse("Quantity",
+                       "allowed for a body whose motion is prescribed are "
+                       "displacement, rotation");
     }
 
     /** Of a vector. */

@@ -286,6 +286,8 @@ namespace impm
         problem->contact->advance(result.increment, *surfaces);
       if (grid.keeps_motion || surfaces)
         policy.advance(grid, result, time, time + dt);
+      if (problem->free_bodies)
+        problem->free_bodies->advance(rigid);
       points.sort();
       if (surfaces)
         surfaces->sort();

@@ -1,6 +1,7 @@
 #ifndef impm_balance_terms_contact_h
 #define impm_balance_terms_contact_h
 
+#include <impm/balance/free_bodies.h>
 #include <impm/balance/terms/term.h>
 #include <impm/contact/contact_links.h>
 
@@ -41,7 +42,8 @@ namespace impm
   class Contact : public Term
   {
   public:
-    explicit Contact(ContactLinks<dim> links);
+    /** With the free bodies of the scene, or null. Collective. */
+    Contact(ContactLinks<dim> links, FreeBodies<dim> *free, MPI_Comm comm);
 
     bool
     evaluate(const Vector &u, bool with_tangent) override;
@@ -67,6 +69,10 @@ namespace impm
     void
     project_tangent() override;
 
+    /** What free bodies give way by. Collective. */
+    void
+    add_correction(const Vector &like, LowRank &correction) const override;
+
     /** Takes the bounds of friction, and on what turns its directions, from
      * the state; returns whether they have changed so much that the step is to
      * be solved anew. Collective. */
@@ -91,8 +97,8 @@ namespace impm
     ContactFigures
     figures(unsigned int pair, MPI_Comm communicator) const;
 
-    /** The work (J) of obstacles on the bodies in the step, taking forces for
-     * the mean of those at both ends. Of this rank. */
+    /** The work (J) of obstacles, but free bodies, on the others in the step,
+     * taking forces for the mean of those at both ends. Of this rank. */
     double
     work_of_obstacles() const;
 
@@ -143,6 +149,19 @@ namespace impm
     state_after(unsigned int                  link,
                 const dealii::Tensor<1, dim> &increment) const;
 
+    /** What contact does on the free bodies as they are. Collective. */
+    std::vector<typename FreeBodies<dim>::Load>
+    loads_on_free_bodies() const;
+
+    /** The states for increments of links, with the free bodies where they
+     * are settled; false if they do not settle. Collective. */
+    bool
+    settle(const std::vector<dealii::Tensor<1, dim>> &increments);
+
+    /** Of what is exerted at a link, by a further motion of its free body. */
+    dealii::Tensor<1, dim>
+    change_by(unsigned int link, unsigned int component) const;
+
     /** Adds a gradient at the nodes of a link. */
     void
     add(unsigned int                  link,
@@ -158,6 +177,8 @@ namespace impm
     /** Across which it acts, as an obstacle is at the start of the step. */
     std::vector<dealii::Tensor<1, dim>> normals;
     std::vector<RigidMotion<dim>>       motions; ///< of obstacles, by pair
+    FreeBodies<dim> *const              free;
+    const MPI_Comm                      communicator;
   };
 } // namespace impm
 

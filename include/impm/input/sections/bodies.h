@@ -3,7 +3,7 @@
 
 #include <impm/input/sections/grid.h>
 #include <impm/input/sections/materials.h>
-#include <impm/scene/shapes.h>
+#include <impm/scene/rigid_inertia.h>
 
 #include <array>
 #include <memory>
@@ -60,6 +60,13 @@ namespace impm
     /** A rigid body that has no points and holds none, but meets surfaces (see
      * ContactSpec). */
     bool meets_surfaces = false;
+
+    /** A rigid body that forces move, which meets surfaces; `centre` is that of
+     * its mass. */
+    bool                   is_free = false;
+    RigidInertia<dim>      inertia;
+    dealii::Tensor<1, dim> free_velocity; ///< at the start (m/s)
+    dealii::Tensor<1, 3>   free_spin;     ///< likewise (rad/s)
   };
 
   template <int dim>

@@ -42,6 +42,15 @@ namespace impm
       return motion;
     }
 
+    template <int dim>
+    bool
+    has_free_bodies(const RigidBodies<dim> &rigid)
+    {
+      return std::any_of(rigid.bodies.begin(),
+                         rigid.bodies.end(),
+                         [](const auto &body) { return body.spec->is_free; });
+    }
+
     /** A scene has the terms that it needs and no others. */
     std::vector<Term *>
     those_that_are(std::vector<Term *> terms)
@@ -146,6 +155,11 @@ namespace impm
                                                 time,
                                                 time + dt) :
           nullptr)
+    , free_bodies(
+        has_free_bodies(rigid) ?
+          std::make_unique<FreeBodies<dim>>(
+            rigid, scene.loads, scene.geometry, integrator, time, dt) :
+          nullptr)
     , contact(
         surfaces && !scene.contact.pairs.empty() ?
           std::make_unique<Contact<dim>>(ContactLinks<dim>(scene,
@@ -157,7 +171,9 @@ namespace impm
                                                            *discretization,
                                                            builder,
                                                            time,
-                                                           dt)) :
+                                                           dt),
+                                         free_bodies.get(),
+                                         grid.communicator) :
           nullptr)
     , start_forces(find_start_forces())
     , start_acceleration(find_start_acceleration())
@@ -192,7 +208,9 @@ namespace impm
                              return body.rigid ||
                                     body.material->has_potential();
                            }) &&
-                 !following_loads && !integrator.has_stress_in_the_middle(),
+                 !following_loads && !integrator.has_stress_in_the_middle() &&
+                 // Turns in space have a potential up to their squares only.
+                 !(free_bodies && dim == 3),
                scene.geometry != GeometryKind::axisymmetric},
               counts)
   {
@@ -351,27 +369,45 @@ namespace impm
 
   template <int dim>
   double
-  StepProblem<dim>::reaction(const std::string         &name,
-                             const Vector              &end_forces,
-                             const std::vector<double> &direction) const
+  StepProblem<dim>::reaction(const ReactionSpec &spec,
+                             const Vector       &u,
+                             const Vector       &end_forces) const
   {
-    double force = constraints.sum_over(name, end_forces, direction);
+    Point<dim>     about;
+    RotationVector axis;
+    if (spec.is_moment)
+      {
+        std::copy(spec.about.begin(), spec.about.end(), about.begin_raw());
+        std::copy(spec.direction.begin(),
+                  spec.direction.end(),
+                  axis.begin_raw());
+      }
+    const double of_nodes =
+      spec.is_moment ?
+        constraints.moment_over(spec.on, end_forces, u, about, axis) :
+        constraints.sum_over(spec.on, end_forces, spec.direction);
     if (!contact)
-      return force;
-    Tensor<1, dim> of_contact;
+      return of_nodes;
+    double of_contact = 0;
     for (unsigned int q = 0; q < scene.contact.pairs.size(); ++q)
       {
         const auto &pair = scene.contact.pairs[q];
-        if (pair.partner_kind != PartnerKind::deformable &&
-            name == (pair.partner_kind == PartnerKind::face ?
-                       scene.faces[pair.partner].name :
-                       scene.bodies[pair.partner].name))
-          of_contact -= contact->force_on_partner(q);
+        if (pair.partner_kind == PartnerKind::deformable ||
+            spec.on != (pair.partner_kind == PartnerKind::face ?
+                          scene.faces[pair.partner].name :
+                          scene.bodies[pair.partner].name))
+          continue;
+        if (spec.is_moment)
+          of_contact -= contact->moment_on_partner(q, about) * axis;
+        else
+          {
+            const auto force = contact->force_on_partner(q);
+            for (unsigned int d = 0; d < dim; ++d)
+              of_contact -= force[d] * spec.direction[d];
+          }
       }
-    of_contact = Utilities::MPI::sum(of_contact, discretization->communicator);
-    for (unsigned int d = 0; d < dim; ++d)
-      force += of_contact[d] * direction[d];
-    return force;
+    return of_nodes +
+           Utilities::MPI::sum(of_contact, discretization->communicator);
   }
 
   template <int dim>

@@ -11,6 +11,20 @@ namespace impm
 
   namespace
   {
+    /** As seen from outside of a body that has turned. */
+    template <int dim>
+    Proximity<dim>
+    turn(const RigidMotion<dim> &motion, Proximity<dim> proximity)
+    {
+      if (!motion.turns())
+        return proximity;
+      const auto R     = motion.rotation();
+      proximity.normal = R * proximity.normal;
+      proximity.curvature =
+        symmetrize(R * Tensor<2, dim>(proximity.curvature) * transpose(R));
+      return proximity;
+    }
+
     template <int dim>
     Obstacle<dim>
     make_obstacle(const ContactPair         &pair,
@@ -21,24 +35,30 @@ namespace impm
                   const double               dt)
     {
       Obstacle<dim> obstacle;
+      unsigned int  n_free = 0;
       if (pair.partner_kind == PartnerKind::rigid)
         for (const auto &body : rigid.bodies)
-          if (body.spec == &scene.bodies[pair.partner])
-            {
-              const auto shift      = body.displacement(0, time);
-              obstacle.displacement = body.displacement(time, time + dt);
-              obstacle.proximity =
-                [shift, &shape = *body.spec->shape](const Point<dim> &x) {
-                  return shape.proximity(x - shift);
-                };
-            }
+          {
+            if (body.spec == &scene.bodies[pair.partner])
+              {
+                obstacle.motion = body.in_step(time, dt);
+                obstacle.proximity =
+                  [before = body.since_start(time),
+                   &shape = *body.spec->shape](const Point<dim> &x) {
+                    return turn(before, shape.proximity(before.inverse(x)));
+                  };
+                if (body.spec->is_free)
+                  obstacle.free_body = n_free;
+              }
+            n_free += body.spec->is_free;
+          }
       if (pair.partner_kind == PartnerKind::face)
         {
           const unsigned int face = pair.partner, d = face / 2;
           const double       side = face % 2 == 0 ? 1 : -1;
           if (const auto &spec = scene.faces[face]; spec.value)
             {
-              obstacle.displacement[d] =
+              obstacle.motion.shift[d] =
                 face_motion(spec, grid, face, time, time + dt);
               // Along itself, too, it takes surfaces with it by friction.
               Point<dim> place;
@@ -49,7 +69,7 @@ namespace impm
               };
               for (unsigned int c = 0; c < spec.value->n_components; ++c)
                 if (spec.value->n_components == dim && c != d)
-                  obstacle.displacement[c] = spec.is_velocity ?
+                  obstacle.motion.shift[c] = spec.is_velocity ?
                                                at(time + dt / 2, c) * dt :
                                                at(time + dt, c) - at(time, c);
             }
@@ -197,7 +217,7 @@ namespace impm
                 link.obstacle        = &obstacles[q];
                 const auto proximity = link.obstacle->proximity(x);
                 if (std::abs(proximity.distance) >
-                      extent + link.obstacle->displacement.norm() ||
+                      extent + link.obstacle->motion.increment_to(x).norm() ||
                     proximity.normal * area > 0)
                   continue;
                 link.gap    = proximity.distance;

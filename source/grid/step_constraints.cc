@@ -64,6 +64,8 @@ namespace impm
     , increment(is_constrained.size())
     , discretization(discretization)
   {
+    for (const auto &body : rigid.bodies)
+      motions.push_back(body.in_step(time, dt));
     const Vector carriers = find_carriers(points, &touched),
                  walls    = touched.are_all_held() ?
                               carriers :
@@ -195,9 +197,8 @@ namespace impm
                          component,
                          time,
                          dt);
-    if (face >= 2 * dim)
-      return rigid.bodies[face - 2 * dim].displacement(time,
-                                                       time + dt)[component];
+    if (const auto *motion = motion_of(face))
+      return motion->increment(discretization.node_positions[node])[component];
     const auto &spec = faces[face];
     if (!spec.value)
       return 0;
@@ -250,19 +251,49 @@ namespace impm
   }
 
   template <int dim>
+  unsigned int
+  StepConstraints<dim>::find(const std::string &name) const
+  {
+    for (unsigned int c = 0; c < n_carriers(); ++c)
+      if (name == name_of(c))
+        return c;
+    return no_carrier;
+  }
+
+  template <int dim>
   double
   StepConstraints<dim>::sum_over(const std::string         &name,
                                  const Vector              &vector,
                                  const std::vector<double> &direction) const
   {
-    unsigned int wanted = no_carrier;
-    for (unsigned int c = 0; c < n_carriers(); ++c)
-      if (name == name_of(c))
-        wanted = c;
-    double sum = 0;
+    const unsigned int wanted = find(name);
+    double             sum    = 0;
     for (unsigned int i = 0; i < vector.locally_owned_size(); ++i)
       if (carrier[i] == wanted)
         sum += vector.local_element(i) * direction[i % dim];
+    return Utilities::MPI::sum(sum, discretization.communicator);
+  }
+
+  template <int dim>
+  double
+  StepConstraints<dim>::moment_over(const std::string    &name,
+                                    const Vector         &vector,
+                                    const Vector         &u,
+                                    const Point<dim>     &about,
+                                    const RotationVector &axis) const
+  {
+    const unsigned int wanted = find(name);
+    double             sum    = 0;
+    for (unsigned int i = 0; i < vector.locally_owned_size(); ++i)
+      if (carrier[i] == wanted)
+        {
+          Tensor<1, dim> arm = discretization.node_positions[i / dim] - about;
+          for (unsigned int d = 0; d < dim; ++d)
+            arm[d] += u.local_element(i - i % dim + d);
+          Tensor<1, dim> force;
+          force[i % dim] = vector.local_element(i);
+          sum += axis * moment_of(arm, force);
+        }
     return Utilities::MPI::sum(sum, discretization.communicator);
   }
 

@@ -96,7 +96,8 @@ namespace impm
   double
   Simulation<dim>::cfl_unit() const
   {
-    return grid.discretization()->smallest_cell_extent / points.largest_speed();
+    return grid.discretization()->smallest_cell_extent /
+           std::max(points.largest_speed(), rigid.largest_speed());
   }
 
   template <int dim>
@@ -368,7 +369,7 @@ namespace impm
     report.stabilization_work = work.stabilization;
     report.uncertain_work     = work.uncertain;
     watch_contact();
-    history.take_figures(*problem, end_forces);
+    history.take_figures(*problem, result.increment, end_forces);
     watch_faces();
     // While points are in the order of their footprints.
     if (row_is_due(report.step, time + report.dt))
@@ -405,6 +406,8 @@ namespace impm
     if (surfaces)
       surfaces->advance(*problem->surface_prints, result.increment);
     policy->advance(grid, result, time, end);
+    if (problem->free_bodies)
+      problem->free_bodies->advance(rigid);
     rigid.move(time, end);
     if (is_off_grid() && off_grid.n_steps++ == 0)
       off_grid.start = time;

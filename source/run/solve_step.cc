@@ -44,6 +44,18 @@ namespace impm
             else
               result.fail("friction does not settle");
           }
+        if (const auto *free = problem.free_bodies.get())
+          {
+            if (!result.converged && !free->unsettled.empty())
+              result.fail("the motion of the rigid body '" + free->unsettled +
+                          "' does not settle");
+            const auto name =
+              free->gone_astray(problem.discretization->smallest_cell_extent);
+            if (result.converged && !name.empty())
+              result.fail("the rigid body '" + name +
+                          "' goes further than a cell from where it was looked "
+                          "for");
+          }
       }
     problem.discretization->interpolate_hanging(u);
     return result;

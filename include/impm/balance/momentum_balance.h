@@ -116,6 +116,9 @@ namespace impm
     void
     assemble(SparseMatrix &matrix) const override;
 
+    LowRank
+    correction() const override;
+
     /** Translations and, where they are free, rotations. */
     std::vector<std::vector<double>>
     near_null_space(const Unknowns &unknowns) const override;

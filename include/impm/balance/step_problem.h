@@ -35,6 +35,9 @@ namespace impm
   class FollowingLoads;
 
   template <int dim>
+  class FreeBodies;
+
+  template <int dim>
   class SurfacePoints;
 
   /**
@@ -102,13 +105,13 @@ namespace impm
                0.;
     }
 
-    /** Component along `direction` of what a face or a rigid body, by its name,
-     * exerts by what it holds, in end_forces(), and by contact (N). Collective.
-     */
+    /** What a face or a rigid body exerts by what it holds, in end_forces(),
+     * and by contact (N), or its moment (N m), along a direction as it is
+     * given; after a step that has converged at `u`. Collective. */
     double
-    reaction(const std::string         &name,
-             const Vector              &end_forces,
-             const std::vector<double> &direction) const;
+    reaction(const ReactionSpec &spec,
+             const Vector       &u,
+             const Vector       &end_forces) const;
 
     /** Those of the terms that are no physics: ghost penalty, springs of pieces
      * that nothing holds and of damping. */
@@ -149,7 +152,9 @@ namespace impm
     const std::unique_ptr<GhostPenalty<dim>>   ghost_penalty;
     const std::unique_ptr<Loads<dim>>          loads;
     const std::unique_ptr<FollowingLoads<dim>> following_loads;
-    const std::unique_ptr<Contact<dim>>        contact;
+    /** Which contact moves, or null. */
+    const std::unique_ptr<FreeBodies<dim>> free_bodies;
+    const std::unique_ptr<Contact<dim>>    contact;
 
     const Vector start_forces; ///< f(0) (N), if asked for, or empty
     /** What the integrator takes for the acceleration at the start: gathered,

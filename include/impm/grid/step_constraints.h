@@ -70,6 +70,28 @@ namespace impm
              const Vector              &vector,
              const std::vector<double> &direction) const;
 
+    /**
+     * Moment of a vector's values (N) that a face or rigid body holds about a
+     * point (m), at the places to which the increment `u` takes the nodes;
+     * along an axis, which the plane takes for z. Collective.
+     */
+    double
+    moment_over(const std::string        &name,
+                const Vector             &vector,
+                const Vector             &u,
+                const dealii::Point<dim> &about,
+                const RotationVector     &axis) const;
+
+    /** Motion in the step of the rigid body that is a carrier; null if it is a
+     * face. */
+    const RigidMotion<dim> *
+    motion_of(const unsigned int carrier) const
+    {
+      return carrier < 2 * dim || carrier >= first_grip() ?
+               nullptr :
+               &motions[carrier - 2 * dim];
+    }
+
     /** Whether each face holds any node that has material. Collective. */
     std::array<bool, 2 * dim>
     faces_that_hold() const;
@@ -127,7 +149,12 @@ namespace impm
     double
     prescribed(unsigned int index, double time, double dt) const;
 
-    const Discretization<dim> &discretization;
+    /** The number of what has a name, or no_carrier. */
+    unsigned int
+    find(const std::string &name) const;
+
+    const Discretization<dim>    &discretization;
+    std::vector<RigidMotion<dim>> motions; ///< of rigid bodies in the step
   };
 } // namespace impm
 

@@ -192,6 +192,35 @@ TEST(ContactInput, AFaceThatMovesWithoutTheGrid)
                {"'top'", "move the grid"});
 }
 
+TEST(ContactInput, WhatDoesNotTurn)
+{
+  const std::string entry    = "Bodies/tool/Rotation";
+  const Overrides   rotation = {"Bodies/tool/Rotation=t",
+                                "Bodies/tool/Centre=0, 0"};
+  expect_blame(rotation + Overrides{"Geometry/Kind=axisymmetric"},
+               entry,
+               {"axisymmetry"});
+  expect_blame(rotation + Overrides{"Grid/Method=Lagrangian"},
+               entry,
+               {"Lagrangian"});
+  expect_blame(rotation + Overrides{"Bodies/tool/Contact=slip y"},
+               entry,
+               {"slip"});
+  expect_blame({"Bodies/tool/Rotation=t"}, "Bodies/tool/Centre", {"2 numbers"});
+  const Overrides moment = {"Output/Reactions=m",
+                            "Output/m/On=tool",
+                            "Output/m/Kind=moment"};
+  expect_blame(moment +
+                 Overrides{"Output/m/About=1, 2", "Geometry/Kind=axisymmetric"},
+               "Output/m/Kind",
+               {"axisymmetry"});
+  expect_blame(moment, "Output/m/About", {"2 numbers"});
+  const auto scene =
+    scene_of(rotation + moment + Overrides{"Output/m/About=1, 2"});
+  EXPECT_TRUE(scene.output.reactions[0].is_moment);
+  EXPECT_EQ(scene.bodies[2].axis[2], 1);
+}
+
 TEST(ContactInput, OrderOfNames)
 {
   for (const std::string members : {"block, tool", "tool, block"})

@@ -407,6 +407,72 @@ TEST(ContactRuns, TwoRodsExchangeTheirVelocities)
 }
 
 
+namespace
+{
+  /** A block lies on a drum that turns under it, between smooth walls. */
+  const Overrides drum = {"Geometry/Shapes=box, ball",
+                          "Geometry/box/Lower corner=0, 0.5",
+                          "Geometry/box/Upper corner=1, 1",
+                          "Geometry/ball/Kind=ball",
+                          "Geometry/ball/Centre=0.5, 0",
+                          "Geometry/ball/Radius=0.5",
+                          "Grid/Lower corner=0, 0.25",
+                          "Grid/Upper corner=1, 1.25",
+                          "Grid/Cells=16, 16",
+                          "Grid/Method=GIMP",
+                          "Materials/rubber/Law=neo-Hookean",
+                          "Materials/rubber/Density=1000",
+                          "Materials/rubber/Young's modulus=1e6",
+                          "Bodies/Names=block, tool",
+                          "Bodies/tool/Kind=rigid",
+                          "Bodies/tool/Contact=surface",
+                          "Bodies/tool/Shape=ball",
+                          "Bodies/tool/Rotation=0.5*t",
+                          "Bodies/tool/Centre=0.5, 0",
+                          "Contact/Pairs=foot",
+                          "Contact/foot/Bodies=block, tool",
+                          "Contact/foot/Kind=Coulomb",
+                          "Contact/foot/Friction coefficient=0.2",
+                          "Boundary conditions/left/Type=slip",
+                          "Boundary conditions/right/Type=slip",
+                          "Loads/Body force=0; -10",
+                          "Time/Integrator=theta",
+                          "Time/Theta=1",
+                          "Time/Time step=0.05",
+                          "Solver/Newton tolerance=1e-9",
+                          "Output/Probes=turn",
+                          "Output/turn/Kind=motion",
+                          "Output/turn/Of=tool",
+                          "Output/turn/Quantity=rotation",
+                          "Output/Reactions=fx, fy, moment",
+                          "Output/fx/On=tool",
+                          "Output/fx/Direction=1, 0",
+                          "Output/fy/On=tool",
+                          "Output/fy/Direction=0, 1",
+                          "Output/moment/On=tool",
+                          "Output/moment/Kind=moment",
+                          "Output/moment/About=0.5, 0"};
+} // namespace
+
+
+// What turns it is worn away by friction.
+TEST(ContactRuns, ADrumTurnsUnderABlock)
+{
+  const auto  columns = run_scene<2>("plane strain", drum);
+  const auto &time = columns.at("time"), &work = columns.at("external_work"),
+             &taken = columns.at("contact_work"), &turn = columns.at("turn");
+  for (unsigned int i = time.size() / 2; i < time.size(); ++i)
+    {
+      EXPECT_NEAR(columns.at("fy")[i] / -5000, 1, 1e-3);
+      EXPECT_NEAR(columns.at("moment")[i] / (-0.2 * 5000 * 0.5), 1, 2e-3);
+      EXPECT_NEAR(turn[i], 0.5 * time[i], 1e-12);
+      const double angle = turn[i] - turn[i - 1];
+      EXPECT_NEAR((work[i] - work[i - 1]) / (500 * angle), 1, 2e-3);
+      EXPECT_NEAR((taken[i] - taken[i - 1]) / (500 * angle), 1, 2e-3);
+    }
+}
+
+
 // The grid is fine where the rigid body is near.
 TEST(ContactRuns, OnAGridThatAdapts)
 {
@@ -480,6 +546,7 @@ TEST(ContactRunsMpi, OnAnyNumberOfRanks)
   compare<2>("plane strain",
              incline<2>("0.1", "1e6") + Overrides{"Time/End time=0.2"});
   compare<2>("plane strain", rods + meet_soon);
+  compare<2>("plane strain", drum + Overrides{"Time/End time=0.3"});
 }
 
 
@@ -533,5 +600,6 @@ TEST(ContactRunsMpi, RestartInContact)
 {
   expect_restart(incline<2>("0.1", "1e6"));
   expect_restart(incline<2>("0.5", "1e6"));
+  expect_restart(drum);
   expect_restart(rods + meet_soon);
 }

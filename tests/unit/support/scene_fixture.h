@@ -287,6 +287,8 @@ namespace impm
         surfaces->advance(*problem->surface_prints, result.increment);
       if (grid.keeps_motion || surfaces)
         policy.advance(grid, result, time, time + dt);
+      if (problem->free_bodies)
+        problem->free_bodies->advance(rigid);
       points.sort();
       if (surfaces)
         surfaces->sort();

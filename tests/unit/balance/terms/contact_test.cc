@@ -73,6 +73,17 @@ namespace
        "Geometry/ground/Radius=0.5"});
   }
 
+  /** Which turns by more than a few points of the block are apart. */
+  template <int dim>
+  Overrides
+  turning(const std::string &angle)
+  {
+    const Overrides turn = {"Bodies/tool/Rotation=" + angle,
+                            "Bodies/tool/Centre=" +
+                              in_space("0.55, -0.24", dim, "0.4")};
+    return dim == 3 ? turn + Overrides{"Bodies/tool/Axis=0.3, 0.1, 1"} : turn;
+  }
+
   template <int dim>
   Overrides
   on_face()
@@ -133,12 +144,13 @@ namespace
               way[c] +=
                 all.coefficients[k] * u.local_element(dim * all.nodes[k] + c);
           if (link.obstacle)
-            way -= link.obstacle->displacement;
+            way -= link.obstacle->motion.increment_to(link.place + way);
           const double gap =
             link.obstacle ?
               link.obstacle->proximity(link.place + way).distance :
               link.gap + link.normal * way;
           ++(link.is_bond ? bonded : gap < 0 ? closed : open);
+          // close to what counts on an obstacle that turns
           Tensor<1, dim> slip = link.slip + way;
           slip -= (slip * link.normal) * link.normal;
           if (!link.is_bond && link.friction_bound > 0)
@@ -272,6 +284,17 @@ TEST(ContactMpi, DerivativesOnARigidBall)
   (check<2>("plane strain", on_ball<2>() + boxes) +
    check<2>("plane strain", on_ball<2>() + refined) +
    check<3>("3D", on_ball<3>()))
+    .expect_all();
+}
+
+
+TEST(ContactMpi, DerivativesOnWhatTurns)
+{
+  (check<2>("plane strain", on_ball<2>() + turning<2>("-0.2*t") + boxes) +
+   check<2>("plane strain", on_ball<2>() + turning<2>("0.01*t^2") + refined) +
+   check<2>("plane strain", on_box<2>() + turning<2>("-0.005*t")) +
+   check<3>("3D", on_ball<3>() + turning<3>("-0.2*t")) +
+   check<3>("3D", on_box<3>() + turning<3>("-0.01*t") + boxes))
     .expect_all();
 }
 

@@ -16,6 +16,21 @@ namespace impm
 {
   using namespace dealii;
 
+  namespace
+  {
+    /** Of all points that carry a load at the start (m^2). Collective. */
+    template <int dim>
+    double
+    area_under(const unsigned int load, const SurfacePoints<dim> &surfaces)
+    {
+      double area = 0;
+      for (unsigned int s = 0; s < surfaces.size(); ++s)
+        if (surfaces.carries(s, load))
+          area += surfaces.initial_area(s);
+      return Utilities::MPI::sum(area, surfaces.communicator);
+    }
+  } // namespace
+
   template <int dim>
   void
   Simulation<dim>::describe()
@@ -34,6 +49,9 @@ namespace impm
     for (unsigned int t = 0; t < counts.size(); ++t)
       text << "  traction " << scene.loads.tractions[t].name << ": on "
            << counts[t] << " points\n";
+    for (unsigned int l = 0; l < scene.loads.on_surfaces.size(); ++l)
+      text << "  load " << scene.loads.on_surfaces[l].name << ": on "
+           << area_under(l, *surfaces) << " m^2 of the surface\n";
     text << "  fields of a point:\n";
     for (const auto &field : points.layout.fields())
       text << "    " << field.name << " (" << field.n_components << ")\n";

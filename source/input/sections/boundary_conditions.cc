@@ -271,8 +271,11 @@ namespace impm
            "subsection."))
       {
         if (std::count(face_names().begin(), face_names().end(), name) > 0)
-          section.fail("Grips",
-                       "found '" + name + "', which is taken by a face");
+          {
+            section.fail("Grips",
+                         "found '" + name + "', which is taken by a face");
+            continue; // when declaring, which the face does
+          }
         for (const auto &body : bodies)
           if (body.name == name)
             section.fail("Grips",

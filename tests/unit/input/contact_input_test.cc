@@ -232,7 +232,13 @@ TEST(ContactInput, WhatIsNotFree)
                {"quasi-static"});
   const Overrides meets =
     by_surface + pair("block, tool") + with_inertia + free;
-  expect_blame(meets, "Bodies/tool/Centre", {"2 numbers"});
+  expect_blame(meets, "Bodies/tool/Mass", {"without 'Density'"});
+  expect_blame(meets + Overrides{"Bodies/tool/Mass=2"},
+               "Bodies/tool/Centre",
+               {"2 numbers"});
+  expect_blame(meets + dense + Overrides{"Bodies/tool/Mass=2"},
+               "Bodies/tool/Mass",
+               {"'Density'"});
   const Overrides given = {"Bodies/tool/Centre=0.5, 0.125",
                            "Bodies/tool/Mass=2"};
   expect_blame(meets + given, "Bodies/tool/Inertia", {"1 numbers"});

@@ -170,8 +170,8 @@ namespace impm
         body.start_load =
           body.start_force +
           put_together<dim>(shift_in<dim>(loads[b].value),
-                            in_body(start.since_start,
-                                    turn_in<dim>(loads[b].value))) -
+                            turned_to_body(start.since_start,
+                                           turn_in<dim>(loads[b].value))) -
           gyroscopic(body, v);
         // As the nodes have it.
         if (integrator.keeps_acceleration() && !is_first_step)
@@ -222,7 +222,7 @@ namespace impm
     body.q          = q;
     body.motion     = {now.centre + now.shift,
                        shift_in<dim>(q),
-                       in_space(now, turn_in<dim>(q))};
+                       turned_to_space(now, turn_in<dim>(q))};
   }
 
   template <int dim>
@@ -478,7 +478,8 @@ namespace impm
           {
             auto      &state = rigid_body.state;
             const auto end   = end_motion(body);
-            state.angles += in_space(state.since_start, turn_in<dim>(body.q));
+            state.angles +=
+              turned_to_space(state.since_start, turn_in<dim>(body.q));
             state.since_start       = chain(state.since_start, body.motion);
             state.velocity          = shift_in<dim>(end.first);
             state.spin              = turn_in<dim>(end.first);

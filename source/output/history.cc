@@ -200,8 +200,8 @@ namespace impm
           const auto spin     = inertia.tensor * state.spin;
           totals.mass += inertia.mass;
           totals.momentum += momentum;
-          totals.angular_momentum +=
-            moment_of<dim>(place, momentum) + in_space(state.since_start, spin);
+          totals.angular_momentum += moment_of<dim>(place, momentum) +
+                                     turned_to_space(state.since_start, spin);
           totals.kinetic_energy +=
             0.5 * (momentum * state.velocity + spin * state.spin);
         }

@@ -25,7 +25,7 @@ namespace impm
     RotationVector
     angular_velocity() const
     {
-      return in_space(since_start, spin);
+      return turned_to_space(since_start, spin);
     }
 
     template <class Archive>

@@ -160,7 +160,7 @@ namespace impm
   /** Of axes that a motion turns to those of space. */
   template <int dim>
   RotationVector
-  in_space(const RigidMotion<dim> &motion, const RotationVector &vector)
+  turned_to_space(const RigidMotion<dim> &motion, const RotationVector &vector)
   {
     if constexpr (dim == 3)
       return motion.turn(vector);
@@ -170,7 +170,7 @@ namespace impm
   /** Of axes of space to those that it turns. */
   template <int dim>
   RotationVector
-  in_body(const RigidMotion<dim> &motion, const RotationVector &vector)
+  turned_to_body(const RigidMotion<dim> &motion, const RotationVector &vector)
   {
     if constexpr (dim == 3)
       return vector + transpose(motion.turning) * vector;

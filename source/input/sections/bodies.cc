@@ -269,10 +269,14 @@ namespace impm
     add_inertia(const Section &section, RigidInertia<dim> &inertia)
     {
       const bool is_axisymmetric = impm::is_axisymmetric(section.chosen);
+      std::optional<double> mass;
       section.add("Mass",
-                  inertia.mass,
-                  {"1", above_zero},
+                  mass,
                   "(kg; in the plane for each metre of thickness).");
+      section.require("Mass", "without 'Density' is a number greater than 0");
+      if (mass && !(*mass > 0))
+        section.refuse("Mass", "allowed is a number greater than 0");
+      inertia.mass      = mass.value_or(0);
       const auto centre = section.numbers("Centre", dim, "Of mass (m).");
       std::copy(centre.begin(), centre.end(), inertia.centre.begin_raw());
       if (is_axisymmetric)
@@ -325,6 +329,10 @@ namespace impm
         add_inertia(section, body.inertia);
       else if (section.is_read)
         {
+          for (const std::string entry : {"Mass", "Centre", "Inertia"})
+            if (!section.get(entry).empty())
+              section.refuse(entry,
+                             "allowed with 'Density', which gives it, is none");
           if (!(*density > 0))
             section.refuse("Density", "allowed is a number greater than 0");
           if (!body.shape->bounding_box)

@@ -62,7 +62,7 @@ TEST(LogStrain, TangentOfLargeStretches)
                               diagonal(10., 10., 0.1),
                               diagonal(10., 10., 10.),
                               diagonal(0.1, 0.1, 0.1)})
-    for (const auto &q : {in_plane, space_gradient})
+    for (const auto &q : {in_plane, in_space})
       {
         const auto F = q * stretch * some_other;
         EXPECT_LT(tangent_error(respond, F, 1e-4), 1e-7) << F;
@@ -75,7 +75,7 @@ TEST(LogStrain, TangentOfEqualAndNearlyEqualStretches)
 {
   for (const double gap : {0., 1e-16, 1e-14, 1e-12, 1e-9, 1e-6, 1e-4, 1e-2})
     for (const double third : {1., 1.2, 1.2 * (1. + 3. * gap)})
-      for (const auto &q : {in_plane, space_gradient})
+      for (const auto &q : {in_plane, in_space})
         {
           const auto F =
             q * diagonal(1.2, 1.2 * (1. + gap), third) * transpose(in_plane);
@@ -106,7 +106,7 @@ TEST(LogStrain, ShearModulusOfTheAxesAgainstExtendedPrecision)
 
         // The same axes in other directions: through the formulas of the
         // plane, and through the spatial ones.
-        for (const auto &q : {in_plane, space_gradient})
+        for (const auto &q : {in_plane, in_space})
           {
             const auto turned = respond(q * F).tangent;
             double     sum    = 0.;
@@ -143,7 +143,7 @@ TEST(LogStrain, Objectivity)
     {
       const auto F   = random_gradient(generator, planar);
       const auto tau = respond(F).kirchhoff_stress;
-      for (const auto &q : {in_plane, space_gradient, some_other})
+      for (const auto &q : {in_plane, in_space, some_other})
         {
           EXPECT_LT((respond(q * F).kirchhoff_stress - turned(tau, q)).norm(),
                     1e-14);

@@ -292,7 +292,7 @@ TEST(JaumannLaw, StressTurnsWithTheMaterial)
   std::mt19937 generator(4);
   for (const auto &named : all_laws())
     if (named.law->form() == Material::Form::full)
-      for (const auto &q : {in_plane, space_gradient, some_other})
+      for (const auto &q : {in_plane, in_space, some_other})
         {
           LawPoint point(named);
           give_a_past(point, generator);

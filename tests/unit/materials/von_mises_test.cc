@@ -178,7 +178,7 @@ TEST(VonMises, TangentOfEqualAndNearlyEqualStretches)
 {
   for (const double gap : {0., 1e-16, 1e-14, 1e-12, 1e-9, 1e-6, 1e-4, 1e-2})
     for (const double third : {0.9, 1.1})
-      for (const auto &q : {in_plane, space_gradient})
+      for (const auto &q : {in_plane, in_space})
         {
           PointState point(0.1);
           const auto increment = q * diagonal(1.2, 1.2 * (1. + gap), third);
@@ -199,7 +199,7 @@ TEST(VonMises, TangentOfLargeStretches)
     for (const auto &stretch : {diagonal(10., 0.1, 1.),
                                 diagonal(0.1, 10., 0.1),
                                 diagonal(10., 10., 0.1)})
-      for (const auto &q : {in_plane, space_gradient})
+      for (const auto &q : {in_plane, in_space})
         {
           PointState point(hardening);
           const auto increment = q * stretch * transpose(in_plane);
@@ -327,7 +327,7 @@ TEST(VonMises, Objectivity)
 {
   std::mt19937 generator(5);
   for (const bool planar : {true, false})
-    for (const auto &q : {in_plane, space_gradient})
+    for (const auto &q : {in_plane, in_space})
       {
         PointState point(0.1), spun(0.1);
         const auto first  = random_gradient(generator, planar, 0.25);
@@ -359,7 +359,7 @@ TEST(VonMises, Objectivity)
 
 TEST(VonMises, NoDeformationKeepsThePointState)
 {
-  for (const auto &q : {unit, in_plane, space_gradient})
+  for (const auto &q : {unit, in_plane, in_space})
     {
       PointState point(0.1);
       point.advance(q * diagonal(1.002, 0.999, 1.001));

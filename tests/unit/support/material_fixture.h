@@ -42,7 +42,7 @@ namespace impm
   }
 
   inline const dealii::Tensor<2, 3> in_plane = rotation_z(0.7);
-  inline const dealii::Tensor<2, 3> space_gradient =
+  inline const dealii::Tensor<2, 3> in_space =
     rotation_z(0.7) * rotation_x(-1.1);
   inline const dealii::Tensor<2, 3> some_other =
     rotation_x(0.4) * rotation_z(2.1);

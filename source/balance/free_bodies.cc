@@ -54,26 +54,13 @@ namespace impm
       return result;
     }
 
-    /** What x is multiplied by in a x x. */
-    Tensor<2, 3>
-    cross_matrix(const RotationVector &a)
-    {
-      Tensor<2, 3> result;
-      for (unsigned int d = 0; d < 3; ++d)
-        {
-          result[(d + 2) % 3][(d + 1) % 3] = a[d];
-          result[(d + 1) % 3][(d + 2) % 3] = -a[d];
-        }
-      return result;
-    }
-
     /** How the body turns further, along its axes, when the vector of its turn
      * grows. */
     Tensor<2, 3>
     growth_of_turn(const RotationVector &turn)
     {
       const double angle = turn.norm();
-      const auto   K     = cross_matrix(turn);
+      const auto   K     = cross_matrix<3>(turn);
       const double half  = std::sin(angle / 2);
       const double b = angle < 1e-4 ? 0.5 : 2 * half * half / (angle * angle);
       const double c = angle < 1e-2 ?

@@ -202,15 +202,8 @@ namespace impm
                // which is small against this one stops a motion.
                scene.solver.residual_scale == ResidualScale::body &&
                  integrator.has_inertia(),
-               std::all_of(scene.bodies.begin(),
-                           scene.bodies.end(),
-                           [](const auto &body) {
-                             return body.rigid ||
-                                    body.material->has_potential();
-                           }) &&
-                 !following_loads && !integrator.has_stress_in_the_middle() &&
-                 // Turns in space have a potential up to their squares only.
-                 !(free_bodies && dim == 3),
+               has_guide() && !following_loads,
+               has_guide(),
                scene.geometry != GeometryKind::axisymmetric},
               counts)
   {
@@ -220,6 +213,20 @@ namespace impm
 
   template <int dim>
   StepProblem<dim>::~StepProblem() = default;
+
+  template <int dim>
+  bool
+  StepProblem<dim>::has_guide() const
+  {
+    return std::all_of(scene.bodies.begin(),
+                       scene.bodies.end(),
+                       [](const auto &body) {
+                         return body.rigid || body.material->has_potential();
+                       }) &&
+           !integrator.has_stress_in_the_middle() &&
+           // Turns in space have a potential up to their squares only.
+           !(free_bodies && dim == 3);
+  }
 
   template <int dim>
   Vector

@@ -95,7 +95,8 @@ namespace impm
       const auto add = [&](const auto &particle) {
         const double *fields = particle.get_properties().data();
         const auto    x      = points.place(particle);
-        const auto    area   = points.normal_of(fields + points.offset_edges);
+        const auto    area =
+          points.normal_of(points.edges_in(fields + points.offset_edges));
         patches.push_back({x,
                            area / area.norm(),
                            std::pow(area.norm(), 1. / (dim - 1)),

@@ -50,9 +50,85 @@ namespace impm
         piece.position -= proximity.distance * proximity.normal;
     }
 
+    /**
+     * The surface in a box, of one piece or one for each side. Where an edge
+     * has been cut off, which leaves the middle of a piece off the surface, and
+     * this is to be better, so often in halves of the box.
+     */
+    template <int dim>
+    void
+    add_pieces(const Shape<dim>               &shape,
+               const Point<dim>               &lower,
+               const Tensor<1, dim>           &extents,
+               const unsigned int              n_halvings,
+               std::vector<SurfacePiece<dim>> &pieces)
+    {
+      std::array<unsigned int, dim> one;
+      one.fill(1);
+      auto       found  = surface_in_box<dim>(shape, lower, extents, one);
+      const auto is_off = [&](const SurfacePiece<dim> &piece) {
+        return std::abs(shape.proximity(piece.position).distance) >
+               0.05 * std::pow(piece.area.norm(), 1. / (dim - 1));
+      };
+      if (n_halvings == 0 || std::none_of(found.begin(), found.end(), is_off))
+        {
+          for (auto &piece : found)
+            put_onto_surface(shape, piece);
+          pieces.insert(pieces.end(), found.begin(), found.end());
+          return;
+        }
+      for (unsigned int v = 0; v < (1u << dim); ++v)
+        {
+          Point<dim> corner = lower;
+          for (unsigned int d = 0; d < dim; ++d)
+            corner[d] += (v >> d) % 2 * 0.5 * extents[d];
+          add_pieces(shape, corner, 0.5 * extents, n_halvings - 1, pieces);
+        }
+    }
+
+    /** The surface in a box of the size of a cell, by what points stand for. */
+    template <int dim>
+    std::vector<SurfacePiece<dim>>
+    surface_by_points(const BodySpec<dim>  &body,
+                      const Point<dim>     &lower,
+                      const Tensor<1, dim> &extents,
+                      const unsigned int    n_halvings)
+    {
+      if (n_halvings == 0)
+        {
+          auto pieces = surface_in_box<dim>(*body.shape,
+                                            lower,
+                                            extents,
+                                            body.points_per_cell);
+          for (auto &piece : pieces)
+            put_onto_surface(*body.shape, piece);
+          return pieces;
+        }
+      std::vector<SurfacePiece<dim>> pieces;
+      unsigned int                   n_parts = 1;
+      Tensor<1, dim>                 part;
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          n_parts *= body.points_per_cell[d];
+          part[d] = extents[d] / body.points_per_cell[d];
+        }
+      for (unsigned int i = 0; i < n_parts; ++i)
+        {
+          Point<dim>   corner = lower;
+          unsigned int rest   = i;
+          for (unsigned int d = 0; d < dim; ++d)
+            {
+              corner[d] += rest % body.points_per_cell[d] * part[d];
+              rest /= body.points_per_cell[d];
+            }
+          add_pieces(*body.shape, corner, part, n_halvings, pieces);
+        }
+      return pieces;
+    }
+
     /** The surface of a body in a cell, and that at the cell on faces of the
-     * domain which the body meets, or which let it
-     * through while it has loads. */
+     * domain which the body meets, or which let it through while it has loads.
+     */
     template <int dim, typename Cell>
     std::vector<SurfacePiece<dim>>
     surface_in_cell(const Scene<dim>  &scene,
@@ -63,18 +139,16 @@ namespace impm
       Tensor<1, dim> extents;
       for (unsigned int d = 0; d < dim; ++d)
         extents[d] = cell_extent(cell, d);
-      auto pieces = surface_in_box<dim>(*body.shape,
-                                        cell->vertex(0),
-                                        extents,
-                                        body.points_per_cell);
-      for (auto &piece : pieces)
-        put_onto_surface(*body.shape, piece);
       const auto &pairs = scene.contact.pairs;
       const auto &loads = scene.loads.on_surfaces;
       const bool  has_loads =
         std::any_of(loads.begin(), loads.end(), [&](const auto &load) {
           return load.body == b;
         });
+      // Loads count on the area.
+      const unsigned int n_halvings = !has_loads ? 0 : dim == 2 ? 6 : 3;
+      auto               pieces =
+        surface_by_points(body, cell->vertex(0), extents, n_halvings);
       for (unsigned int f = 0; f < 2 * dim; ++f)
         if (cell->at_boundary(f) &&
             ((has_loads && !scene.faces[f].constrained[f / 2]) ||
@@ -90,8 +164,8 @@ namespace impm
             Point<dim>         lower = cell->vertex(0);
             const double       plane = lower[d] + (upper ? extents[d] : 0);
             lower[d] += (upper ? 1 : -1) * extents[d];
-            for (auto piece : surface_in_box<dim>(
-                   *body.shape, lower, extents, body.points_per_cell))
+            for (auto piece :
+                 surface_by_points(body, lower, extents, n_halvings))
               if (std::abs(piece.position[d] - plane) < 1e-6 * extents[d])
                 {
                   piece.position[d] = plane;
@@ -439,29 +513,6 @@ namespace impm
         edges[0] = cross_product_3d(edges[1], n);
       }
     return edges;
-  }
-
-  template <>
-  Tensor<1, 2>
-  SurfacePoints<2>::normal_of(const double *edges)
-  {
-    Tensor<1, 2> normal;
-    normal[0] = edges[1];
-    normal[1] = -edges[0];
-    return normal;
-  }
-
-  template <>
-  Tensor<1, 3>
-  SurfacePoints<3>::normal_of(const double *edges)
-  {
-    Tensor<1, 3> first, second;
-    for (unsigned int d = 0; d < 3; ++d)
-      {
-        first[d]  = edges[d];
-        second[d] = edges[3 + d];
-      }
-    return cross_product_3d(first, second);
   }
 
   template <int dim>

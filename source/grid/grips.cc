@@ -11,38 +11,28 @@ namespace impm
 
   namespace
   {
-    /** Calls `take` with the particles that a grip holds. */
-    template <int dim, typename Take>
-    void
-    for_each_gripped(const GripSpec<dim>       &grip,
-                     const MaterialPoints<dim> &points,
-                     const Take                &take)
+    template <int dim>
+    Tensor<1, dim>
+    value_at(const GripSpec<dim> &grip,
+             const Point<dim>    &place,
+             const double         time)
     {
-      unsigned int next = 0;
-      for (const auto &particle : points.sorted.particles)
-        if (const unsigned int p = next++;
-            points.body(p) == grip.body &&
-            grip.where->value(points.initial_position(p)) > 0)
-          take(particle, p);
+      dealii::Vector<double> value(dim);
+      grip.value->set_time(time);
+      grip.value->vector_value(place, value);
+      return Tensor<1, dim>(make_array_view(value));
     }
 
     /** The place X at the start of the run that a displacement d(X) has brought
      * to x. */
     template <int dim>
-    Point<dim>
+    std::optional<Point<dim>>
     place_at_start(const GripSpec<dim> &grip,
                    const Point<dim>    &x,
                    const double         time)
     {
-      auto &displacement = *grip.value;
-      displacement.set_time(time);
-      dealii::Vector<double> value(dim);
-      const auto             image = [&](const Point<dim> &X) {
-        displacement.vector_value(X, value);
-        Point<dim> result = X;
-        for (unsigned int d = 0; d < dim; ++d)
-          result[d] += value[d];
-        return result;
+      const auto image = [&](const Point<dim> &X) {
+        return X + value_at(grip, X, time);
       };
       // Newton's method with quotients of differences. Halved steps, since the
       // guess may be half a turn off.
@@ -79,67 +69,45 @@ namespace impm
           gap = closer;
         }
       if (!(gap < 1e-8 * (x.norm() + X.distance(x))))
-        throw ComputationError(
-          "at t = " + std::to_string(time) + " s: grip '" + grip.name +
-          "' has no place at the start whose displacement leads to where it "
-          "holds a node: a displacement must be one to one, also a cell "
-          "around what it grips");
+        return std::nullopt;
       return X;
     }
   } // namespace
 
   template <int dim>
-  void
-  hold_by_grip(const GripSpec<dim>       &grip,
-               const MaterialPoints<dim> &points,
-               const Discretization<dim> &discretization,
-               const double               number,
-               Vector                    &values)
+  Cells<dim>
+  gripped_cells(const GripSpec<dim> &grip, const MaterialPoints<dim> &points)
   {
-    const auto &hanging_nodes = discretization.numbering->hanging_nodes;
-    typename Triangulation<dim>::active_cell_iterator last;
-    for_each_gripped(grip, points, [&](const auto &particle, const auto p) {
-      // points of one cell come one after the other
-      const auto surrounding = particle.get_surrounding_cell();
-      if (surrounding == last)
-        return;
-      last             = surrounding;
-      const auto cell  = discretization.with_dofs(surrounding);
-      const auto layer = points.layer(p);
-      for (const unsigned int v : cell->vertex_indices())
-        for (unsigned int c = 0; c < dim; ++c)
-          if (grip.constrained[c])
-            {
-              const auto dof = cell->vertex_dof_index(v, dim * layer + c);
-              values(dof)    = number;
-              // A hanging node is held by holding its masters.
-              if (hanging_nodes.is_constrained(dof))
-                for (const auto &entry :
-                     *hanging_nodes.get_constraint_entries(dof))
-                  values(entry.first) = number;
-            }
-    });
+    Cells<dim>   cells;
+    unsigned int p = 0;
+    for (const auto &particle : points.sorted.particles)
+      {
+        // points of one cell come one after the other
+        const auto cell    = particle.get_surrounding_cell();
+        const bool is_held = points.body(p) == grip.body &&
+                             (cells.empty() || cells.back() != cell) &&
+                             grip.where->value(points.initial_position(p)) > 0;
+        if (is_held)
+          cells.push_back(cell);
+        ++p;
+      }
+    return cells;
   }
 
   template <int dim>
-  double
+  std::optional<Tensor<1, dim>>
   grip_motion(const GripSpec<dim> &grip,
               const Point<dim>    &place,
-              const unsigned int   component,
               const double         time,
               const double         dt)
   {
-    auto &value = *grip.value;
     if (grip.is_velocity)
-      {
-        value.set_time(time + dt / 2);
-        return dt * value.value(place, component);
-      }
-    const auto X = grip.varies ? place_at_start(grip, place, time) : place;
-    value.set_time(time);
-    const double before = value.value(X, component);
-    value.set_time(time + dt);
-    return value.value(X, component) - before;
+      return dt * value_at(grip, place, time + dt / 2);
+    const auto X =
+      grip.varies ? place_at_start(grip, place, time) : std::optional(place);
+    if (!X)
+      return std::nullopt;
+    return value_at(grip, *X, time + dt) - value_at(grip, *X, time);
   }
 
   template <int dim>
@@ -149,8 +117,7 @@ namespace impm
   {
     for (const auto &grip : grips)
       {
-        unsigned int n = 0;
-        for_each_gripped(grip, points, [&](const auto &, const auto) { ++n; });
+        const unsigned int n = gripped_cells(grip, points).size();
         if (Utilities::MPI::sum(n, points.communicator) == 0)
           throw InputError("Boundary conditions/" + grip.name + "/Where",
                            "found no point of body '" + grip.body_name +
@@ -158,10 +125,10 @@ namespace impm
       }
   }
 
-  template decltype(hold_by_grip<2>) hold_by_grip<2>;
-  template decltype(hold_by_grip<3>) hold_by_grip<3>;
-  template decltype(grip_motion<2>)  grip_motion<2>;
-  template decltype(grip_motion<3>)  grip_motion<3>;
-  template decltype(check_grips<2>)  check_grips<2>;
-  template decltype(check_grips<3>)  check_grips<3>;
+  template decltype(gripped_cells<2>) gripped_cells<2>;
+  template decltype(gripped_cells<3>) gripped_cells<3>;
+  template decltype(grip_motion<2>)   grip_motion<2>;
+  template decltype(grip_motion<3>)   grip_motion<3>;
+  template decltype(check_grips<2>)   check_grips<2>;
+  template decltype(check_grips<3>)   check_grips<3>;
 } // namespace impm

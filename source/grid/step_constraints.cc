@@ -1,3 +1,4 @@
+#include <impm/base/exceptions.h>
 #include <impm/grid/grips.h>
 #include <impm/grid/step_constraints.h>
 
@@ -72,6 +73,11 @@ namespace impm
                               find_carriers(points, nullptr);
 
     const auto &masters = discretization.numbering->masters;
+    // Of all components of a node at once; one grip may hold some of them, and
+    // another one others.
+    unsigned int                  gripped_node = -1, grip_of_node = -1;
+    std::optional<Tensor<1, dim>> of_grip;
+    unsigned int                  lost = 0; // a grip that knows none, plus 1
     for (unsigned int i = 0; i < is_constrained.size(); ++i)
       {
         const bool hangs  = !masters.empty() && !masters[i / dim].empty();
@@ -83,13 +89,37 @@ namespace impm
           wall[i] = static_cast<unsigned int>(walls.local_element(i)) - 1;
         if (hangs || !used || !held)
           continue;
-        carrier[i]   = static_cast<unsigned int>(carriers.local_element(i)) - 1;
+        carrier[i] = static_cast<unsigned int>(carriers.local_element(i)) - 1;
+        if (carrier[i] >= first_grip())
+          {
+            if (gripped_node != i / dim || grip_of_node != carrier[i])
+              of_grip = grip_motion(grips[carrier[i] - first_grip()],
+                                    discretization.node_positions[i / dim],
+                                    time,
+                                    dt);
+            gripped_node = i / dim;
+            grip_of_node = carrier[i];
+            if (of_grip)
+              increment[i] = (*of_grip)[i % dim];
+            else
+              lost = std::max(lost, carrier[i] + 1);
+            continue;
+          }
         increment[i] = prescribed(i, time, dt);
         // What has not reached its face yet comes to it in this step.
         if (const unsigned int f = carrier[i];
             f < 2 * dim && i % dim == f / 2 && faces[f].holds_by_touch)
           increment[i] += (f % 2 == 0 ? -1 : 1) * touched.gap(i);
       }
+    if (!grips.empty())
+      lost = Utilities::MPI::max(lost, discretization.communicator);
+    if (lost > 0)
+      throw ComputationError(
+        "at t = " + Utilities::to_string(time) + " s: grip '" +
+        name_of(lost - 1) +
+        "' has no place at the start whose displacement leads to where it "
+        "holds a node: a displacement must be one to one, also a cell around "
+        "what is gripped");
   }
 
   template <int dim>
@@ -101,9 +131,7 @@ namespace impm
     discretization.initialize(carriers);
     hold_faces(touched, carriers);
     hold_rigid_bodies(carriers);
-    for (unsigned int g = 0; g < grips.size(); ++g)
-      hold_by_grip(
-        grips[g], points, discretization, first_grip() + g + 1, carriers);
+    hold_grips(points, carriers);
     carriers.compress(VectorOperation::max);
     carriers.update_ghost_values();
     return carriers;
@@ -141,12 +169,38 @@ namespace impm
                 hold(face, layer);
   }
 
+  namespace
+  {
+    /** Sets the components that `holds` at all nodes of a cell. */
+    template <int dim, typename Holds>
+    void
+    hold_nodes(const Discretization<dim>                               &grid,
+               const typename Triangulation<dim>::active_cell_iterator &place,
+               const Holds                                             &holds,
+               const double                                             value,
+               Vector &carriers)
+    {
+      const auto  cell          = grid.with_dofs(place);
+      const auto &hanging_nodes = grid.numbering->hanging_nodes;
+      for (const unsigned int v : cell->vertex_indices())
+        for (unsigned int c = 0; c < dim * grid.numbering->n_layers; ++c)
+          if (holds(c))
+            {
+              const auto dof = cell->vertex_dof_index(v, c);
+              carriers(dof)  = value;
+              // A hanging node is held by holding its masters.
+              if (hanging_nodes.is_constrained(dof))
+                for (const auto &entry :
+                     *hanging_nodes.get_constraint_entries(dof))
+                  carriers(entry.first) = value;
+            }
+    }
+  } // namespace
+
   template <int dim>
   void
   StepConstraints<dim>::hold_rigid_bodies(Vector &carriers) const
   {
-    const auto        &hanging_nodes = discretization.numbering->hanging_nodes;
-    const unsigned int n_layers      = discretization.numbering->n_layers;
     for (unsigned int b = 0; b < rigid.bodies.size(); ++b)
       {
         const unsigned int normal = rigid.bodies[b].spec->slip_normal;
@@ -162,24 +216,29 @@ namespace impm
         for (const auto &particle : rigid.bodies[b].points->particles)
           {
             // points of one cell come one after the other
-            const auto surrounding = particle.get_surrounding_cell();
-            if (surrounding == last)
-              continue;
-            last            = surrounding;
-            const auto cell = discretization.with_dofs(surrounding);
-            for (const unsigned int v : cell->vertex_indices())
-              for (unsigned int c = 0; c < dim * n_layers; ++c)
-                if (holds(c))
-                  {
-                    const auto dof = cell->vertex_dof_index(v, c);
-                    carriers(dof)  = value;
-                    // A hanging node is held by holding its masters.
-                    if (hanging_nodes.is_constrained(dof))
-                      for (const auto &entry :
-                           *hanging_nodes.get_constraint_entries(dof))
-                        carriers(entry.first) = value;
-                  }
+            const auto cell = particle.get_surrounding_cell();
+            if (cell != last)
+              hold_nodes(discretization, cell, holds, value, carriers);
+            last = cell;
           }
+      }
+  }
+
+  template <int dim>
+  void
+  StepConstraints<dim>::hold_grips(const MaterialPoints<dim> &points,
+                                   Vector                    &carriers) const
+  {
+    for (unsigned int g = 0; g < grips.size(); ++g)
+      {
+        const auto &grip  = grips[g];
+        const auto  layer = points.layer_of_body(grip.body);
+        const auto  holds = [&](const unsigned int component) {
+          return component / dim == layer && grip.constrained[component % dim];
+        };
+        for (const auto &cell : gripped_cells(grip, points))
+          hold_nodes(
+            discretization, cell, holds, first_grip() + g + 1, carriers);
       }
   }
 
@@ -191,12 +250,6 @@ namespace impm
   {
     const unsigned int node = index / dim, component = index % dim;
     const unsigned int face = carrier[index];
-    if (face >= first_grip())
-      return grip_motion(grips[face - first_grip()],
-                         discretization.node_positions[node],
-                         component,
-                         time,
-                         dt);
     if (const auto *motion = motion_of(face))
       return motion->increment(discretization.node_positions[node])[component];
     const auto &spec = faces[face];

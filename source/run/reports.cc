@@ -181,6 +181,24 @@ namespace impm
              Utilities::to_string(time + report.dt) +
              " s: steps are too long for what comes together, or the pressure "
              "is beyond the modulus of the material");
+    if (!problem->free_bodies)
+      return;
+    for (const auto &body : rigid.bodies)
+      if (const auto &box = body.spec->shape->bounding_box;
+          body.spec->is_free && box)
+        for (unsigned int f = 0; f < 2 * dim; ++f)
+          for (unsigned int v = 0; v < (1u << dim); ++v)
+            {
+              const auto   place = body.state.since_start(box->vertex(v));
+              const double beyond =
+                (f % 2 == 0 ? -1 : 1) * (place[f / 2] - grid.face_position(f));
+              if (scene.faces[f].constrained[f / 2] && beyond > 0)
+                warn("face and " + body.spec->name,
+                     "free rigid body '" + body.spec->name +
+                       "' reaches beyond face '" + scene.faces[f].name +
+                       "' of the domain, which holds deformable bodies alone: "
+                       "it passes through");
+            }
   }
 
   template <int dim>

@@ -40,6 +40,7 @@ namespace impm
       double                        end_weight; ///< w
       bool minds_forces_at_work; ///< whether residuals are small beside these
       bool has_potential;
+      bool has_guide;     ///< whether it has one nearly
       bool has_rotations; ///< whether a rotation of the body is free
     };
 
@@ -78,6 +79,12 @@ namespace impm
     has_potential() const override
     {
       return parts.has_potential;
+    }
+
+    bool
+    has_guide() const override
+    {
+      return parts.has_guide;
     }
 
     double

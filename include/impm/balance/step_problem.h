@@ -166,6 +166,10 @@ namespace impm
     MomentumBalance<dim>                                balance;
 
   private:
+    /** Whether there is a potential but for loads that follow surfaces. */
+    bool
+    has_guide() const;
+
     /** Finds the stresses at the start; returns f(0), if it is asked for. */
     Vector
     find_start_forces();

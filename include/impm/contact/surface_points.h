@@ -95,7 +95,7 @@ namespace impm
     dealii::Tensor<1, dim>
     area(const unsigned int point) const
     {
-      return around[point] * normal_of(data[point] + offset_edges);
+      return around[point] * normal_of(edges(point));
     }
 
     /** Edges of a piece of surface (m), one after the other. */
@@ -104,10 +104,7 @@ namespace impm
     Edges
     edges(const unsigned int point) const
     {
-      Edges result;
-      for (unsigned int k = 0; k < dim - 1; ++k)
-        result[k] = vector(point, offset_edges + k * dim);
-      return result;
+      return edges_in(data[point] + offset_edges);
     }
 
     void
@@ -142,7 +139,7 @@ namespace impm
     initial_area(const unsigned int point) const
     {
       return circumference(initial_position(point)) *
-             normal_of(data[point] + offset_initial_edges).norm();
+             normal_of(edges_in(data[point] + offset_initial_edges)).norm();
     }
 
     /** Likewise (m). */
@@ -214,10 +211,27 @@ namespace impm
     static Edges
     edges_of(const dealii::Tensor<1, dim> &area);
 
+    /** Edges as they stand in fields. */
+    static Edges
+    edges_in(const double *fields)
+    {
+      Edges result;
+      for (auto &edge : result)
+        for (unsigned int d = 0; d < dim; ++d)
+          edge[d] = *fields++;
+      return result;
+    }
+
     /** Outward normal times area of a piece in the plane or in space, given its
      * edges. */
     static dealii::Tensor<1, dim>
-    normal_of(const double *edges);
+    normal_of(const Edges &edges)
+    {
+      if constexpr (dim == 2)
+        return dealii::cross_product_2d(edges[0]);
+      else
+        return dealii::cross_product_3d(edges[0], edges[1]);
+    }
 
     SortedParticles<dim> sorted;
     const GeometryKind   geometry;

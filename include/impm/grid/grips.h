@@ -1,35 +1,34 @@
 #ifndef impm_grid_grips_h
 #define impm_grid_grips_h
 
-#include <impm/grid/discretization.h>
 #include <impm/input/sections/boundary_conditions.h>
 #include <impm/points/material_points.h>
 
+#include <optional>
+#include <vector>
+
 namespace impm
 {
-  /**
-   * Sets the values of nodes that a grip holds, all of the cells of its points
-   * in the layer of its body, to a number. Ghosts are not summed.
-   */
   template <int dim>
-  void
-  hold_by_grip(const GripSpec<dim>       &grip,
-               const MaterialPoints<dim> &points,
-               const Discretization<dim> &discretization,
-               double                     number,
-               Vector                    &values);
+  using Cells =
+    std::vector<typename dealii::Triangulation<dim>::active_cell_iterator>;
+
+  /** The cells of this rank whose nodes a grip holds: those of its points. */
+  template <int dim>
+  Cells<dim>
+  gripped_cells(const GripSpec<dim> &grip, const MaterialPoints<dim> &points);
 
   /**
-   * What a grip prescribes of a component in a step (m), at a place where its
+   * What a grip prescribes in a step (m), also of components that it leaves
+   * free, at a place where its
    * material is at the start of it. A displacement is a function of places at
    * the start of the run: they are those that the grip has brought here.
-   * Throws ComputationError where none is found.
+   * Nothing where there is none.
    */
   template <int dim>
-  double
+  std::optional<dealii::Tensor<1, dim>>
   grip_motion(const GripSpec<dim>      &grip,
               const dealii::Point<dim> &place,
-              unsigned int              component,
               double                    time,
               double                    dt);
 

@@ -26,6 +26,23 @@ namespace impm
     return result;
   }
 
+  /** The matrix that makes it of vectors. */
+  template <int dim>
+  dealii::Tensor<2, dim>
+  cross_matrix(const RotationVector &rotation)
+  {
+    dealii::Tensor<2, dim> result;
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        dealii::Tensor<1, dim> unit;
+        unit[d]           = 1;
+        const auto column = cross<dim>(rotation, unit);
+        for (unsigned int c = 0; c < dim; ++c)
+          result[c][d] = column[c];
+      }
+    return result;
+  }
+
   /** Moment of a force at the end of an arm; about z alone in the plane. */
   template <int dim>
   RotationVector

@@ -30,8 +30,9 @@ namespace impm
   public:
     /**
      * For the step from `time` to `time + dt`. `support` is positive where a
-     * node that is not hanging has material, its ghosts are up to date.
-     * Collective.
+     * node that is not hanging has material, its ghosts are up to date. Throws
+     * ComputationError, on every rank alike, for a grip that cannot tell where
+     * its nodes come from. Collective.
      */
     StepConstraints(const Faces<dim>                 &faces,
                     const std::vector<GripSpec<dim>> &grips,
@@ -144,6 +145,9 @@ namespace impm
 
     void
     hold_rigid_bodies(Vector &carriers) const;
+
+    void
+    hold_grips(const MaterialPoints<dim> &points, Vector &carriers) const;
 
     /** The motion that its carrier gives a local element in a step (m). */
     double

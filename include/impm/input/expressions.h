@@ -109,6 +109,14 @@ namespace impm
         return true;
     return false;
   }
+
+  /** Whether it has one value everywhere. */
+  template <int n_variables>
+  bool
+  is_uniform(const dealii::FunctionParser<n_variables> &function)
+  {
+    return !names_any_of(function, "x|y|z|rand|rand_seed");
+  }
 } // namespace impm
 
 #endif

@@ -71,6 +71,14 @@ namespace impm
     virtual bool
     has_potential() const = 0;
 
+    /** Whether it does so nearly, so that a line search may go by the potential
+     * as well. */
+    virtual bool
+    has_guide() const
+    {
+      return has_potential();
+    }
+
     /**
      * What the potential gains of a force (N) along a direction that is zero
      * where prescribed, hanging nodes included (J).

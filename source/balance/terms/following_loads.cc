@@ -4,6 +4,7 @@
 #include <deal.II/fe/fe_values.h>
 
 #include <impm/balance/terms/following_loads.h>
+#include <impm/grid/rigid_motion.h>
 #include <impm/input/expressions.h>
 
 #include <algorithm>
@@ -25,34 +26,10 @@ namespace impm
       return result;
     }
 
-    /** The matrix of a x. */
-    Tensor<2, 3>
-    cross(const Tensor<1, 3> &a)
-    {
-      Tensor<2, 3> result;
-      for (unsigned int d = 0; d < 3; ++d)
-        {
-          const unsigned int e = (d + 1) % 3, f = (d + 2) % 3;
-          result[e][f] = -a[d];
-          result[f][e] = a[d];
-        }
-      return result;
-    }
-
     std::array<Tensor<2, 3>, 2>
     derivatives_of_normal(const std::array<Tensor<1, 3>, 2> &edges)
     {
-      return {{-cross(edges[1]), cross(edges[0])}};
-    }
-
-    template <int dim>
-    Tensor<1, dim>
-    normal_of(const std::array<Tensor<1, dim>, dim - 1> &edges)
-    {
-      if constexpr (dim == 2)
-        return cross_product_2d(edges[0]);
-      else
-        return cross_product_3d(edges[0], edges[1]);
+      return {{-cross_matrix<3>(edges[1]), cross_matrix<3>(edges[0])}};
     }
 
     /** From the axis of a torque to a place (m). */
@@ -64,19 +41,6 @@ namespace impm
       if constexpr (dim == 3)
         q -= (q * torque.axis) * torque.axis;
       return q;
-    }
-
-    /** The matrix of n x, n being the axis of a torque. */
-    template <int dim>
-    Tensor<2, dim>
-    turn_about(const SurfaceLoadSpec<dim> &torque)
-    {
-      const auto     n = cross(torque.axis);
-      Tensor<2, dim> result;
-      for (unsigned int c = 0; c < dim; ++c)
-        for (unsigned int d = 0; d < dim; ++d)
-          result[c][d] = n[c][d];
-      return result;
     }
   } // namespace
 
@@ -122,7 +86,7 @@ namespace impm
     const auto       &loads = scene.loads.on_surfaces;
     std::vector<bool> vary;
     for (const auto &load : loads)
-      vary.push_back(names_any_of(*load.value, "x|y|z"));
+      vary.push_back(!is_uniform(*load.value));
     unsigned int s = 0;
     for (const auto &particle : surfaces.sorted.particles)
       {
@@ -208,8 +172,8 @@ namespace impm
     const auto               &motion = grid.nodal_state().displacement;
     std::array<bool, 2 * dim> vary;
     for (unsigned int f = 0; f < 2 * dim; ++f)
-      vary[f] = scene.faces[f].pressure &&
-                names_any_of(*scene.faces[f].pressure, "x|y|z");
+      vary[f] =
+        scene.faces[f].pressure && !is_uniform(*scene.faces[f].pressure);
     for (const auto &[cell, layer, nodes_of_cell] : populated.cells)
       for (const unsigned int f : cell->face_indices())
         {
@@ -278,7 +242,7 @@ namespace impm
     if (piece.torque)
       {
         const auto  &torque = *piece.torque;
-        const auto   turn   = turn_about(torque);
+        const auto   turn   = cross_matrix<dim>(torque.axis);
         const auto   q      = from_axis(torque, place);
         const double square = q.norm_square();
         torque.value->set_time(time);
@@ -295,7 +259,7 @@ namespace impm
     auto edges = piece.edges;
     for (unsigned int k = 0; k < dim - 1; ++k)
       edges[k] += motion.edges[k];
-    const auto   normal = normal_of<dim>(edges);
+    const auto   normal = SurfacePoints<dim>::normal_of(edges);
     const bool   ring   = scene.geometry == GeometryKind::axisymmetric;
     const double around = ring ? 2 * numbers::PI * place[0] : 1.;
     const auto  &where  = piece.is_initial ? piece.initial_place : place;
@@ -413,6 +377,27 @@ namespace impm
                              nodes.begin() + piece.end),
              block);
       }
+  }
+
+  template <int dim>
+  double
+  FollowingLoads<dim>::energy(const Vector &u, const Vector & /*felt*/) const
+  {
+    double sum = 0;
+    for (unsigned int i = 0; i < pieces.size(); ++i)
+      {
+        const auto motion = motion_of(pieces[i], u);
+        Motion     half   = motion;
+        half.way /= 2;
+        for (auto &edge : half.edges)
+          edge /= 2;
+        sum +=
+          motion.way *
+          (state_at(pieces[i], Motion(), to, false).force +
+           4. * state_at(pieces[i], half, to, false).force + states[i].force) /
+          6;
+      }
+    return sum;
   }
 
   template <int dim>

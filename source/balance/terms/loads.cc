@@ -18,13 +18,6 @@ namespace impm
 
   namespace
   {
-    template <typename Density>
-    bool
-    is_uniform(const Density &density)
-    {
-      return !names_any_of(density, "x|y|z|rand|rand_seed");
-    }
-
     template <int dim>
     void
     subtract_forces_on_points(const LoadsSpec<dim>      &spec,

@@ -114,7 +114,7 @@ namespace impm
         "expressions, one for each direction, between semicolons; "
         "'free' instead of one leaves that component free.");
       section.require("Value", "are expressions");
-      grip.varies = grip.value && names_any_of(*grip.value, "x|y|z");
+      grip.varies = grip.value && !is_uniform(*grip.value);
       if (grip.varies && !grip.is_velocity &&
           std::count(grip.constrained.begin(), grip.constrained.end(), false))
         section.refuse("Value",

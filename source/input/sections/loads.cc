@@ -131,7 +131,7 @@ namespace impm
           add_coordinates(section, load.is_initial);
           return;
         }
-      if (load.value && names_any_of(*load.value, "x|y|z"))
+      if (load.value && !is_uniform(*load.value))
         section.refuse("Value", "allowed for a torque is a function of t");
       add_axis(section, load, geometry);
     }

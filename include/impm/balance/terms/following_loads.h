@@ -20,8 +20,8 @@ namespace impm
    * stay parallelograms. Of a torque M about an axis n each piece has a part
    * M_s, by its initial area times the square of its distance at the start of
    * the step, as the force M_s (n x q) / q^2 with q from the axis to where it
-   * is: so the moment is M at any increment. Neither has an energy, and the
-   * derivative, which is exact, is not symmetric.
+   * is: so the moment is M at any increment. Neither has a potential but
+   * nearly, and the derivative, which is exact, is not symmetric.
    */
   template <int dim>
   class FollowingLoads : public Term
@@ -51,11 +51,10 @@ namespace impm
     void
     add_start_force(Vector &force) const override;
 
+    /** Minus the work along the straight way to an increment, that of the
+     * state: a potential as far as one could be (J). */
     double
-    energy(const Vector & /*u*/, const Vector & /*felt*/) const override
-    {
-      return 0;
-    }
+    energy(const Vector &u, const Vector &felt) const override;
 
     void
     apply(const Vector &direction, Vector &image) const override;

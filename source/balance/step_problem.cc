@@ -5,6 +5,7 @@
 #include <impm/base/exceptions.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace impm
 {
@@ -177,6 +178,7 @@ namespace impm
           nullptr)
     , start_forces(find_start_forces())
     , start_acceleration(find_start_acceleration())
+    , is_damped(damping.factor > 0)
     , nodal_forces(make_nodal_forces(points,
                                      scene.stabilization.isolated_stiffness,
                                      damping))
@@ -207,12 +209,34 @@ namespace impm
                scene.geometry != GeometryKind::axisymmetric},
               counts)
   {
+    check_loads();
     if (!integrator.is_explicit())
       footprints.make_patches(response.average.groups);
   }
 
   template <int dim>
   StepProblem<dim>::~StepProblem() = default;
+
+  template <int dim>
+  void
+  StepProblem<dim>::check_loads() const
+  {
+    bool is_finite = true;
+    if (loads)
+      is_finite = std::isfinite(loads->at_start.l1_norm()) &&
+                  std::isfinite(loads->at_end.l1_norm());
+    if (following_loads)
+      {
+        Vector at_rest;
+        discretization->initialize(at_rest);
+        is_finite = following_loads->evaluate(at_rest, false) && is_finite;
+      }
+    if (Utilities::MPI::min(is_finite ? 1 : 0, discretization->communicator) ==
+        0)
+      throw ComputationError("at t = " + Utilities::to_string(time + dt) +
+                             " s: the value of a load is no finite number "
+                             "(section Loads, or a face)");
+  }
 
   template <int dim>
   bool
@@ -321,6 +345,26 @@ namespace impm
              std::make_unique<NodalForces>(std::move(stiffness),
                                            1.,
                                            std::move(known));
+  }
+
+  template <int dim>
+  bool
+  StepProblem<dim>::relax_springs(const Vector &u)
+  {
+    spring_share = 0;
+    if (!contact || n_held_cells == 0 || is_damped)
+      return false;
+    const double pressing = contact->total_force();
+    Vector       forces;
+    discretization->initialize(forces);
+    nodal_forces->add_force(u, forces);
+    if (pressing > 0)
+      spring_share = forces.l1_norm() / pressing;
+    // What nothing touches stays where the springs hold it.
+    if (spring_share < 1e-3)
+      return false;
+    nodal_forces->rest_at(u);
+    return true;
   }
 
   template <int dim>

@@ -68,7 +68,7 @@ namespace impm
           X   = next;
           gap = closer;
         }
-      if (!(gap < 1e-8 * (x.norm() + X.distance(x))))
+      if (!(gap <= 1e-8 * (x.norm() + X.distance(x))))
         return std::nullopt;
       return X;
     }

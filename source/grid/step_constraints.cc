@@ -3,6 +3,7 @@
 #include <impm/grid/step_constraints.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace impm
 {
@@ -99,7 +100,7 @@ namespace impm
                                     dt);
             gripped_node = i / dim;
             grip_of_node = carrier[i];
-            if (of_grip)
+            if (of_grip && std::isfinite(of_grip->norm()))
               increment[i] = (*of_grip)[i % dim];
             else
               lost = std::max(lost, carrier[i] + 1);
@@ -117,9 +118,9 @@ namespace impm
       throw ComputationError(
         "at t = " + Utilities::to_string(time) + " s: grip '" +
         name_of(lost - 1) +
-        "' has no place at the start whose displacement leads to where it "
-        "holds a node: a displacement must be one to one, also a cell around "
-        "what is gripped");
+        "' prescribes no finite number, or has no place at the start whose "
+        "displacement leads to where it holds a node: it must be one to one, "
+        "also a cell around what is gripped");
   }
 
   template <int dim>

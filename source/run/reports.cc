@@ -181,6 +181,14 @@ namespace impm
              Utilities::to_string(time + report.dt) +
              " s: steps are too long for what comes together, or the pressure "
              "is beyond the modulus of the material");
+    if (problem->spring_share >= 1e-3)
+      warn(
+        "springs that hold pieces",
+        "springs that hold pieces of material that nothing else holds take " +
+          Utilities::to_string(100 * problem->spring_share) +
+          " % of the force of contact at t = " +
+          Utilities::to_string(time + report.dt) +
+          " s: a piece slides away under its load without inertia");
     if (!problem->free_bodies)
       return;
     for (const auto &body : rigid.bodies)

@@ -32,6 +32,12 @@ namespace impm
           return NewtonSolver(spec, problem.balance, timer).solve(u);
         };
         result = solve();
+        // Springs hold what nothing holds, but only till contact does.
+        const unsigned int most_for_springs = 10;
+        for (unsigned int i = 0; i < most_for_springs && result.converged &&
+                                 problem.relax_springs(u);
+             ++i)
+          result.append(solve());
         // Friction has an energy only where the pressure is known.
         const unsigned int most = 50;
         for (unsigned int i = 0; problem.contact && result.converged &&

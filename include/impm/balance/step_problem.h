@@ -113,6 +113,17 @@ namespace impm
              const Vector       &u,
              const Vector       &end_forces) const;
 
+    /**
+     * After a step has converged at `u`: lets the springs of pieces that
+     * nothing holds but contact be at rest there, and returns whether they took
+     * so much of its force that the step is to be solved anew. Collective.
+     */
+    bool
+    relax_springs(const Vector &u);
+
+    /** Part of the force of contact that the springs took last. */
+    double spring_share = 0;
+
     /** Those of the terms that are no physics: ghost penalty, springs of pieces
      * that nothing holds and of damping. */
     std::vector<const Term *>
@@ -161,11 +172,17 @@ namespace impm
      * or from the forces then (m/s^2). */
     const Vector                                        start_acceleration;
     unsigned int                                        n_held_cells = 0;
+    const bool                                          is_damped;
     const std::unique_ptr<NodalForces>                  nodal_forces;
     const std::unique_ptr<const VelocitySmoothing<dim>> smoothing; ///< or null
     MomentumBalance<dim>                                balance;
 
   private:
+    /** Throws ComputationError, on every rank alike, for loads that are no
+     * finite numbers. */
+    void
+    check_loads() const;
+
     /** Whether there is a potential but for loads that follow surfaces. */
     bool
     has_guide() const;

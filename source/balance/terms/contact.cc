@@ -451,6 +451,16 @@ namespace impm
 
   template <int dim>
   double
+  Contact<dim>::total_force() const
+  {
+    double sum = 0;
+    for (unsigned int l = 0; l < states.size(); ++l)
+      sum += all.links[l].area * states[l].gradient.norm();
+    return Utilities::MPI::sum(sum, communicator);
+  }
+
+  template <int dim>
+  double
   Contact<dim>::energy_gain() const
   {
     double sum = 0;

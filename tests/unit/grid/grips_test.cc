@@ -1,3 +1,5 @@
+#include <impm/base/exceptions.h>
+
 #include <gtest/gtest.h>
 
 #include "expect_blame.h"
@@ -128,6 +130,20 @@ TEST(GripsMpi, VelocityWithInertia)
         path_of_run());
   EXPECT_NEAR(columns.at("momentum_x").back(), 0.2, 1e-9);
   EXPECT_NEAR(columns.at("momentum_y").back(), 0.1, 1e-9);
+}
+
+
+// At one of the nodes, that of one rank.
+TEST(GripsMpi, MustKnowWhereNodesComeFrom)
+{
+  for (const std::string value : {"if(y > 0.9, 0/0, 0); 0", "0.1*x*x; 0"})
+    {
+      Model<2> model(block_scene("plane strain"), grip(value));
+      if (value[0] == 'i')
+        EXPECT_THROW(model.begin_step(), ComputationError);
+      else
+        model.begin_step();
+    }
 }
 
 

@@ -117,6 +117,24 @@ TEST(ContactRuns, ABlockSlidesWithoutFriction)
 }
 
 
+// Springs, which hold it until it touches, take none of the load.
+TEST(ContactRunsMpi, WhatContactAloneHolds)
+{
+  const auto columns = run_scene<2>("plane strain",
+                                    incline<2>("", "1e6") +
+                                      Overrides{"Time/Integrator=quasi-static",
+                                                "Time/Time step=0.5",
+                                                "Loads/Body force=0; 0",
+                                                "Loads/Tractions=press",
+                                                "Loads/press/Body=block",
+                                                "Loads/press/Kind=pressure",
+                                                "Loads/press/Where=y - 0.74",
+                                                "Loads/press/Value=1000*t"});
+  EXPECT_GT(columns.at("held_cells").back(), 0);
+  EXPECT_NEAR(columns.at("fy").back(), -1000, 3);
+}
+
+
 TEST(ContactRuns, ABlockSlidesAgainstFriction)
 {
   const auto check = [](const auto &columns, const double end, const double m) {

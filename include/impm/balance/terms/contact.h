@@ -79,6 +79,11 @@ namespace impm
     bool
     renew_friction(MPI_Comm communicator);
 
+    /** Sum of what presses, without regard to direction (N), in the state.
+     * Collective. */
+    double
+    total_force() const;
+
     /** What the layers store and friction has taken in the step (J), of this
      * rank. */
     double

@@ -289,6 +289,25 @@ namespace impm
   }
 
   template <int dim>
+  LowRank
+  MomentumBalance<dim>::correction() const
+  {
+    LowRank result;
+    for (const Term *term : parts.strain_terms)
+      term->add_correction(work, result);
+    for (auto *vectors : {&result.left, &result.right})
+      for (Vector &vector : *vectors)
+        {
+          vector.compress(VectorOperation::add);
+          parts.discretization.condense_hanging(vector);
+          parts.constraints.set_zero(vector);
+        }
+    for (Vector &vector : result.left)
+      vector *= parts.end_weight;
+    return result;
+  }
+
+  template <int dim>
   std::vector<std::vector<double>>
   MomentumBalance<dim>::near_null_space(const Unknowns &unknowns) const
   {

@@ -1,9 +1,11 @@
 #include <impm/balance/step_problem.h>
 #include <impm/balance/terms/contact.h>
+#include <impm/balance/terms/following_loads.h>
 #include <impm/balance/terms/isolated_cells.h>
 #include <impm/base/exceptions.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace impm
 {
@@ -39,6 +41,15 @@ namespace impm
         for (Vector *vector : {&motion.velocity, &motion.acceleration})
           constraints.stop_held(*vector);
       return motion;
+    }
+
+    template <int dim>
+    bool
+    has_free_bodies(const RigidBodies<dim> &rigid)
+    {
+      return std::any_of(rigid.bodies.begin(),
+                         rigid.bodies.end(),
+                         [](const auto &body) { return body.spec->is_free; });
     }
 
     /** A scene has the terms that it needs and no others. */
@@ -84,8 +95,10 @@ namespace impm
                    points, scene.bodies, footprints, grid, *discretization) :
                  NodalMotion())
     , constraints(scene.faces,
+                  scene.grips,
                   grid,
                   *discretization,
+                  points,
                   rigid,
                   time,
                   dt,
@@ -104,6 +117,11 @@ namespace impm
                      discretization->locally_owned_dofs().n_elements(),
                    0),
         grid.communicator))
+    , surface_prints(
+        surfaces ?
+          std::make_unique<const Footprints<dim>>(
+            surfaces->footprints(builder, populated, *discretization)) :
+          nullptr)
     , internal_forces(std::make_unique<InternalForces<dim>>(
         footprints, response, discretization->smallest_cell_extent))
     , ghost_penalty(scene.stabilization.ghost_penalty > 0 &&
@@ -122,23 +140,45 @@ namespace impm
                                            footprints,
                                            populated,
                                            *discretization,
+                                           surfaces,
+                                           surface_prints.get(),
                                            motion.mass,
                                            time,
                                            time + dt) :
               nullptr)
-    , contact(surfaces ? std::make_unique<Contact<dim>>(
-                           ContactLinks<dim>(scene,
-                                             grid,
-                                             *surfaces,
-                                             rigid,
-                                             populated,
-                                             *discretization,
-                                             builder,
-                                             time,
-                                             dt)) :
-                         nullptr)
+    , following_loads(
+        FollowingLoads<dim>::exist_in(scene) ?
+          std::make_unique<FollowingLoads<dim>>(scene,
+                                                grid,
+                                                surfaces,
+                                                surface_prints.get(),
+                                                populated,
+                                                time,
+                                                time + dt) :
+          nullptr)
+    , free_bodies(
+        has_free_bodies(rigid) ?
+          std::make_unique<FreeBodies<dim>>(
+            rigid, scene.loads, scene.geometry, integrator, time, dt) :
+          nullptr)
+    , contact(
+        surfaces && !scene.contact.pairs.empty() ?
+          std::make_unique<Contact<dim>>(ContactLinks<dim>(scene,
+                                                           grid,
+                                                           *surfaces,
+                                                           *surface_prints,
+                                                           rigid,
+                                                           populated,
+                                                           *discretization,
+                                                           builder,
+                                                           time,
+                                                           dt),
+                                         free_bodies.get(),
+                                         grid.communicator) :
+          nullptr)
     , start_forces(find_start_forces())
     , start_acceleration(find_start_acceleration())
+    , is_damped(damping.factor > 0)
     , nodal_forces(make_nodal_forces(points,
                                      scene.stabilization.isolated_stiffness,
                                      damping))
@@ -153,6 +193,7 @@ namespace impm
                those_that_are({internal_forces.get(),
                                ghost_penalty.get(),
                                loads.get(),
+                               following_loads.get(),
                                contact.get()}),
                those_that_are({nodal_forces.get()}),
                start_forces,
@@ -163,22 +204,53 @@ namespace impm
                // which is small against this one stops a motion.
                scene.solver.residual_scale == ResidualScale::body &&
                  integrator.has_inertia(),
-               std::all_of(scene.bodies.begin(),
-                           scene.bodies.end(),
-                           [](const auto &body) {
-                             return body.rigid ||
-                                    body.material->has_potential();
-                           }) &&
-                 !integrator.has_stress_in_the_middle(),
+               has_guide() && !following_loads,
+               has_guide(),
                scene.geometry != GeometryKind::axisymmetric},
               counts)
   {
+    check_loads();
     if (!integrator.is_explicit())
       footprints.make_patches(response.average.groups);
   }
 
   template <int dim>
   StepProblem<dim>::~StepProblem() = default;
+
+  template <int dim>
+  void
+  StepProblem<dim>::check_loads() const
+  {
+    bool is_finite = true;
+    if (loads)
+      is_finite = std::isfinite(loads->at_start.l1_norm()) &&
+                  std::isfinite(loads->at_end.l1_norm());
+    if (following_loads)
+      {
+        Vector at_rest;
+        discretization->initialize(at_rest);
+        is_finite = following_loads->evaluate(at_rest, false) && is_finite;
+      }
+    if (Utilities::MPI::min(is_finite ? 1 : 0, discretization->communicator) ==
+        0)
+      throw ComputationError("at t = " + Utilities::to_string(time + dt) +
+                             " s: the value of a load is no finite number "
+                             "(section Loads, or a face)");
+  }
+
+  template <int dim>
+  bool
+  StepProblem<dim>::has_guide() const
+  {
+    return std::all_of(scene.bodies.begin(),
+                       scene.bodies.end(),
+                       [](const auto &body) {
+                         return body.rigid || body.material->has_potential();
+                       }) &&
+           !integrator.has_stress_in_the_middle() &&
+           // Turns in space have a potential up to their squares only.
+           !(free_bodies && dim == 3);
+  }
 
   template <int dim>
   Vector
@@ -196,8 +268,10 @@ namespace impm
         !(integrator.keeps_acceleration() && time == 0))
       return forces;
     discretization->initialize(forces);
-    for (const Term *term :
-         those_that_are({internal_forces.get(), loads.get(), contact.get()}))
+    for (const Term *term : those_that_are({internal_forces.get(),
+                                            loads.get(),
+                                            following_loads.get(),
+                                            contact.get()}))
       term->add_start_force(forces);
     forces.compress(VectorOperation::add);
     discretization->condense_hanging(forces);
@@ -274,6 +348,26 @@ namespace impm
   }
 
   template <int dim>
+  bool
+  StepProblem<dim>::relax_springs(const Vector &u)
+  {
+    spring_share = 0;
+    if (!contact || n_held_cells == 0 || is_damped)
+      return false;
+    const double pressing = contact->total_force();
+    Vector       forces;
+    discretization->initialize(forces);
+    nodal_forces->add_force(u, forces);
+    if (pressing > 0)
+      spring_share = forces.l1_norm() / pressing;
+    // What nothing touches stays where the springs hold it.
+    if (spring_share < 1e-3)
+      return false;
+    nodal_forces->rest_at(u);
+    return true;
+  }
+
+  template <int dim>
   std::vector<const Term *>
   StepProblem<dim>::stabilization() const
   {
@@ -294,6 +388,8 @@ namespace impm
     bytes["response"]   = response.memory_consumption();
     if (ghost_penalty)
       bytes["ghost_penalty"] = ghost_penalty->memory_consumption();
+    if (surface_prints)
+      bytes["surface_footprints"] = surface_prints->memory_consumption();
     if (contact)
       bytes["contact"] = contact->memory_consumption();
     return bytes;
@@ -324,27 +420,45 @@ namespace impm
 
   template <int dim>
   double
-  StepProblem<dim>::reaction(const std::string         &name,
-                             const Vector              &end_forces,
-                             const std::vector<double> &direction) const
+  StepProblem<dim>::reaction(const ReactionSpec &spec,
+                             const Vector       &u,
+                             const Vector       &end_forces) const
   {
-    double force = constraints.sum_over(name, end_forces, direction);
+    Point<dim>     about;
+    RotationVector axis;
+    if (spec.is_moment)
+      {
+        std::copy(spec.about.begin(), spec.about.end(), about.begin_raw());
+        std::copy(spec.direction.begin(),
+                  spec.direction.end(),
+                  axis.begin_raw());
+      }
+    const double of_nodes =
+      spec.is_moment ?
+        constraints.moment_over(spec.on, end_forces, u, about, axis) :
+        constraints.sum_over(spec.on, end_forces, spec.direction);
     if (!contact)
-      return force;
-    Tensor<1, dim> of_contact;
+      return of_nodes;
+    double of_contact = 0;
     for (unsigned int q = 0; q < scene.contact.pairs.size(); ++q)
       {
         const auto &pair = scene.contact.pairs[q];
-        if (pair.partner_kind != PartnerKind::deformable &&
-            name == (pair.partner_kind == PartnerKind::face ?
-                       scene.faces[pair.partner].name :
-                       scene.bodies[pair.partner].name))
-          of_contact -= contact->force_on_partner(q);
+        if (pair.partner_kind == PartnerKind::deformable ||
+            spec.on != (pair.partner_kind == PartnerKind::face ?
+                          scene.faces[pair.partner].name :
+                          scene.bodies[pair.partner].name))
+          continue;
+        if (spec.is_moment)
+          of_contact -= contact->moment_on_partner(q, about) * axis;
+        else
+          {
+            const auto force = contact->force_on_partner(q);
+            for (unsigned int d = 0; d < dim; ++d)
+              of_contact -= force[d] * spec.direction[d];
+          }
       }
-    of_contact = Utilities::MPI::sum(of_contact, discretization->communicator);
-    for (unsigned int d = 0; d < dim; ++d)
-      force += of_contact[d] * direction[d];
-    return force;
+    return of_nodes +
+           Utilities::MPI::sum(of_contact, discretization->communicator);
   }
 
   template <int dim>

@@ -11,6 +11,20 @@ namespace impm
 
   namespace
   {
+    /** As seen from outside of a body that has turned. */
+    template <int dim>
+    Proximity<dim>
+    turn(const RigidMotion<dim> &motion, Proximity<dim> proximity)
+    {
+      if (!motion.turns())
+        return proximity;
+      const auto R     = motion.rotation();
+      proximity.normal = R * proximity.normal;
+      proximity.curvature =
+        symmetrize(R * Tensor<2, dim>(proximity.curvature) * transpose(R));
+      return proximity;
+    }
+
     template <int dim>
     Obstacle<dim>
     make_obstacle(const ContactPair         &pair,
@@ -21,24 +35,30 @@ namespace impm
                   const double               dt)
     {
       Obstacle<dim> obstacle;
+      unsigned int  n_free = 0;
       if (pair.partner_kind == PartnerKind::rigid)
         for (const auto &body : rigid.bodies)
-          if (body.spec == &scene.bodies[pair.partner])
-            {
-              const auto shift      = body.displacement(0, time);
-              obstacle.displacement = body.displacement(time, time + dt);
-              obstacle.proximity =
-                [shift, &shape = *body.spec->shape](const Point<dim> &x) {
-                  return shape.proximity(x - shift);
-                };
-            }
+          {
+            if (body.spec == &scene.bodies[pair.partner])
+              {
+                obstacle.motion = body.in_step(time, dt);
+                obstacle.proximity =
+                  [before = body.since_start(time),
+                   &shape = *body.spec->shape](const Point<dim> &x) {
+                    return turn(before, shape.proximity(before.inverse(x)));
+                  };
+                if (body.spec->is_free)
+                  obstacle.free_body = n_free;
+              }
+            n_free += body.spec->is_free;
+          }
       if (pair.partner_kind == PartnerKind::face)
         {
           const unsigned int face = pair.partner, d = face / 2;
           const double       side = face % 2 == 0 ? 1 : -1;
           if (const auto &spec = scene.faces[face]; spec.value)
             {
-              obstacle.displacement[d] =
+              obstacle.motion.shift[d] =
                 face_motion(spec, grid, face, time, time + dt);
               // Along itself, too, it takes surfaces with it by friction.
               Point<dim> place;
@@ -49,7 +69,7 @@ namespace impm
               };
               for (unsigned int c = 0; c < spec.value->n_components; ++c)
                 if (spec.value->n_components == dim && c != d)
-                  obstacle.displacement[c] = spec.is_velocity ?
+                  obstacle.motion.shift[c] = spec.is_velocity ?
                                                at(time + dt / 2, c) * dt :
                                                at(time + dt, c) - at(time, c);
             }
@@ -75,7 +95,8 @@ namespace impm
       const auto add = [&](const auto &particle) {
         const double *fields = particle.get_properties().data();
         const auto    x      = points.place(particle);
-        const auto    area   = points.normal_of(fields + points.offset_edges);
+        const auto    area =
+          points.normal_of(points.edges_in(fields + points.offset_edges));
         patches.push_back({x,
                            area / area.norm(),
                            std::pow(area.norm(), 1. / (dim - 1)),
@@ -121,6 +142,7 @@ namespace impm
   ContactLinks<dim>::ContactLinks(const Scene<dim>          &scene,
                                   const BackgroundGrid<dim> &grid,
                                   const SurfacePoints<dim>  &points,
+                                  const Footprints<dim>     &prints,
                                   const RigidBodies<dim>    &rigid,
                                   const PopulatedCells<dim> &populated,
                                   const Discretization<dim> &discretization,
@@ -134,16 +156,14 @@ namespace impm
     const FacedSurface<dim> faced(patches_of(points));
 
     using Place = typename FootprintBuilder<dim>::Place;
-    std::vector<Place> own, others;
+    std::vector<Place> others;
     unsigned int       s = 0;
     for (const auto &particle : points.sorted.particles)
       {
-        const unsigned int body = points.body(s);
-        const auto         x    = points.place(particle);
-        const auto         cell = particle.get_surrounding_cell();
-        own.push_back(
-          {particle.get_location(), cell, scene.bodies[body].layer});
-        double extent = cell_extent(cell, 0);
+        const unsigned int body   = points.body(s);
+        const auto         x      = points.place(particle);
+        const auto         cell   = particle.get_surrounding_cell();
+        double             extent = cell_extent(cell, 0);
         for (unsigned int d = 1; d < dim; ++d)
           extent = std::min(extent, cell_extent(cell, d));
         for (unsigned int q = 0; q < pairs.size(); ++q)
@@ -198,7 +218,7 @@ namespace impm
                 link.obstacle        = &obstacles[q];
                 const auto proximity = link.obstacle->proximity(x);
                 if (std::abs(proximity.distance) >
-                      extent + link.obstacle->displacement.norm() ||
+                      extent + link.obstacle->motion.increment_to(x).norm() ||
                     proximity.normal * area > 0)
                   continue;
                 link.gap    = proximity.distance;
@@ -215,7 +235,6 @@ namespace impm
           }
         ++s;
       }
-    prints               = builder.build_at(own, populated, discretization);
     const auto of_others = builder.build_at(others, populated, discretization);
     for (unsigned int l = 0; l < links.size(); ++l)
       {

@@ -11,51 +11,31 @@ namespace impm
 
   namespace
   {
-    /** Deformable bodies whose surface some pair follows. */
-    template <int dim>
-    std::vector<unsigned int>
-    bodies_with_surface(const ContactSpec &contact, const Bodies<dim> &bodies)
+    /** Whether some pair follows the surface of a deformable body. */
+    bool
+    meets_others(const ContactSpec &contact, const unsigned int body)
     {
-      std::vector<unsigned int> result;
-      for (unsigned int b = 0; b < bodies.size(); ++b)
-        if (std::any_of(contact.pairs.begin(),
-                        contact.pairs.end(),
-                        [&](const auto &pair) {
-                          return pair.body == b ||
-                                 (pair.partner_kind ==
-                                    PartnerKind::deformable &&
-                                  pair.kind != ContactKind::bonded &&
-                                  pair.partner == b);
-                        }))
-          result.push_back(b);
-      return result;
+      return std::any_of(
+        contact.pairs.begin(), contact.pairs.end(), [&](const auto &pair) {
+          return pair.body == body ||
+                 (pair.partner_kind == PartnerKind::deformable &&
+                  pair.kind != ContactKind::bonded && pair.partner == body);
+        });
     }
 
-    /** A square with this outward normal times area. */
+    /** A bit for each load that acts on a place of the surface of a body. */
     template <int dim>
-    typename SurfacePoints<dim>::Edges
-    edges_of(const Tensor<1, dim> &area)
+    std::uint64_t
+    loads_at(const std::vector<SurfaceLoadSpec<dim>> &loads,
+             const unsigned int                       body,
+             const Point<dim>                        &place)
     {
-      typename SurfacePoints<dim>::Edges edges;
-      if constexpr (dim == 2)
-        {
-          edges[0][0] = -area[1];
-          edges[0][1] = area[0];
-        }
-      else
-        {
-          const auto   n = area / area.norm();
-          unsigned int d = 0; // the axis that is the most along the surface
-          for (unsigned int e = 1; e < dim; ++e)
-            if (std::abs(n[e]) < std::abs(n[d]))
-              d = e;
-          Tensor<1, dim> axis;
-          axis[d]  = 1;
-          edges[1] = cross_product_3d(n, axis);
-          edges[1] *= std::sqrt(area.norm()) / edges[1].norm();
-          edges[0] = cross_product_3d(edges[1], n);
-        }
-      return edges;
+      std::uint64_t bits = 0;
+      for (unsigned int l = 0; l < loads.size(); ++l)
+        if (loads[l].body == body &&
+            (!loads[l].where || loads[l].where->value(place) > 0))
+          bits |= std::uint64_t(1) << l;
+      return bits;
     }
 
     /** Moves the middle of a piece, which lies on a chord of a curved surface,
@@ -70,36 +50,122 @@ namespace impm
         piece.position -= proximity.distance * proximity.normal;
     }
 
-    /** The surface of a body in a cell, and that on faces of the domain, which
-     * the body meets, at the cell. */
+    /**
+     * The surface in a box, of one piece or one for each side. Where an edge
+     * has been cut off, which leaves the middle of a piece off the surface, and
+     * this is to be better, so often in halves of the box.
+     */
+    template <int dim>
+    void
+    add_pieces(const Shape<dim>               &shape,
+               const Point<dim>               &lower,
+               const Tensor<1, dim>           &extents,
+               const unsigned int              n_halvings,
+               std::vector<SurfacePiece<dim>> &pieces)
+    {
+      std::array<unsigned int, dim> one;
+      one.fill(1);
+      auto       found  = surface_in_box<dim>(shape, lower, extents, one);
+      const auto is_off = [&](const SurfacePiece<dim> &piece) {
+        return std::abs(shape.proximity(piece.position).distance) >
+               0.05 * std::pow(piece.area.norm(), 1. / (dim - 1));
+      };
+      if (n_halvings == 0 || std::none_of(found.begin(), found.end(), is_off))
+        {
+          for (auto &piece : found)
+            put_onto_surface(shape, piece);
+          pieces.insert(pieces.end(), found.begin(), found.end());
+          return;
+        }
+      for (unsigned int v = 0; v < (1u << dim); ++v)
+        {
+          Point<dim> corner = lower;
+          for (unsigned int d = 0; d < dim; ++d)
+            corner[d] += (v >> d) % 2 * 0.5 * extents[d];
+          add_pieces(shape, corner, 0.5 * extents, n_halvings - 1, pieces);
+        }
+    }
+
+    /** The surface in a box of the size of a cell, by what points stand for. */
+    template <int dim>
+    std::vector<SurfacePiece<dim>>
+    surface_by_points(const BodySpec<dim>  &body,
+                      const Point<dim>     &lower,
+                      const Tensor<1, dim> &extents,
+                      const unsigned int    n_halvings)
+    {
+      if (n_halvings == 0)
+        {
+          auto pieces = surface_in_box<dim>(*body.shape,
+                                            lower,
+                                            extents,
+                                            body.points_per_cell);
+          for (auto &piece : pieces)
+            put_onto_surface(*body.shape, piece);
+          return pieces;
+        }
+      std::vector<SurfacePiece<dim>> pieces;
+      unsigned int                   n_parts = 1;
+      Tensor<1, dim>                 part;
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          n_parts *= body.points_per_cell[d];
+          part[d] = extents[d] / body.points_per_cell[d];
+        }
+      for (unsigned int i = 0; i < n_parts; ++i)
+        {
+          Point<dim>   corner = lower;
+          unsigned int rest   = i;
+          for (unsigned int d = 0; d < dim; ++d)
+            {
+              corner[d] += rest % body.points_per_cell[d] * part[d];
+              rest /= body.points_per_cell[d];
+            }
+          add_pieces(*body.shape, corner, part, n_halvings, pieces);
+        }
+      return pieces;
+    }
+
+    /** The surface of a body in a cell, and that at the cell on faces of the
+     * domain which the body meets, or which let it through while it has loads.
+     */
     template <int dim, typename Cell>
     std::vector<SurfacePiece<dim>>
-    surface_in_cell(const ContactSpec   &contact,
-                    const BodySpec<dim> &body,
-                    const unsigned int   b,
-                    const Cell          &cell)
+    surface_in_cell(const Scene<dim>  &scene,
+                    const unsigned int b,
+                    const Cell        &cell)
     {
+      const auto    &body = scene.bodies[b];
       Tensor<1, dim> extents;
       for (unsigned int d = 0; d < dim; ++d)
         extents[d] = cell_extent(cell, d);
-      auto pieces = surface_in_box<dim>(*body.shape,
-                                        cell->vertex(0),
-                                        extents,
-                                        body.points_per_cell);
-      for (auto &piece : pieces)
-        put_onto_surface(*body.shape, piece);
-      for (const auto &pair : contact.pairs)
-        if (pair.body == b && pair.partner_kind == PartnerKind::face &&
-            cell->at_boundary(pair.partner))
+      const auto &pairs = scene.contact.pairs;
+      const auto &loads = scene.loads.on_surfaces;
+      const bool  has_loads =
+        std::any_of(loads.begin(), loads.end(), [&](const auto &load) {
+          return load.body == b;
+        });
+      // Loads count on the area.
+      const unsigned int n_halvings = !has_loads ? 0 : dim == 2 ? 6 : 3;
+      auto               pieces =
+        surface_by_points(body, cell->vertex(0), extents, n_halvings);
+      for (unsigned int f = 0; f < 2 * dim; ++f)
+        if (cell->at_boundary(f) &&
+            ((has_loads && !scene.faces[f].constrained[f / 2]) ||
+             std::any_of(pairs.begin(), pairs.end(), [&](const auto &pair) {
+               return pair.body == b &&
+                      pair.partner_kind == PartnerKind::face &&
+                      pair.partner == f;
+             })))
           {
             // The box outside, of which the plane of the face is a part.
-            const unsigned int d     = pair.partner / 2;
-            const bool         upper = pair.partner % 2 == 1;
+            const unsigned int d     = f / 2;
+            const bool         upper = f % 2 == 1;
             Point<dim>         lower = cell->vertex(0);
             const double       plane = lower[d] + (upper ? extents[d] : 0);
             lower[d] += (upper ? 1 : -1) * extents[d];
-            for (auto piece : surface_in_box<dim>(
-                   *body.shape, lower, extents, body.points_per_cell))
+            for (auto piece :
+                 surface_by_points(body, lower, extents, n_halvings))
               if (std::abs(piece.position[d] - plane) < 1e-6 * extents[d])
                 {
                   piece.position[d] = plane;
@@ -133,34 +199,44 @@ namespace impm
   } // namespace
 
   template <int dim>
-  SurfacePoints<dim>::SurfacePoints(const ContactSpec         &contact,
-                                    const Bodies<dim>         &bodies,
-                                    const GeometryKind         geometry,
+  SurfacePoints<dim>::SurfacePoints(const Scene<dim>          &scene,
                                     const BackgroundGrid<dim> &grid)
-    : sorted(grid, n_fields)
-    , geometry(geometry)
-    , sees_others(std::any_of(contact.pairs.begin(),
-                              contact.pairs.end(),
+    : offset_loads(scene.contact.pairs.empty() ? offset_pair : offset_gap + 1)
+    , offset_initial_edges(offset_loads + 1)
+    , offset_initial_position(offset_initial_edges + dim * (dim - 1))
+    , n_fields(scene.loads.on_surfaces.empty() ? offset_loads :
+                                                 offset_initial_position + dim)
+    , sorted(grid, n_fields)
+    , geometry(scene.geometry)
+    , sees_others(std::any_of(scene.contact.pairs.begin(),
+                              scene.contact.pairs.end(),
                               [](const auto &pair) {
                                 return pair.partner_kind ==
                                          PartnerKind::deformable &&
                                        pair.kind != ContactKind::bonded;
                               }))
     , communicator(grid.communicator)
-    , bodies(bodies)
+    , scene(scene)
     , grid(grid)
   {
-    std::vector<Seed<dim>> seeds;
-    std::vector<Edges>     edges;
-    for (const unsigned int b : bodies_with_surface(contact, bodies))
+    const bool has_pairs = !scene.contact.pairs.empty();
+    const bool has_loads = !scene.loads.on_surfaces.empty();
+    for (unsigned int b = 0; b < scene.bodies.size(); ++b)
       {
-        seeds.clear();
-        edges.clear();
+        const bool meets = meets_others(scene.contact, b);
+        if (scene.bodies[b].rigid || (!meets && !has_loads))
+          continue;
+        std::vector<Seed<dim>>     seeds;
+        std::vector<Edges>         edges;
+        std::vector<std::uint64_t> loads;
         for (const auto &cell : grid.triangulation.active_cell_iterators())
           if (cell->is_locally_owned())
-            for (const auto &piece :
-                 surface_in_cell<dim>(contact, bodies[b], b, cell))
+            for (const auto &piece : surface_in_cell<dim>(scene, b, cell))
               {
+                const auto bits =
+                  loads_at(scene.loads.on_surfaces, b, piece.position);
+                if (!meets && bits == 0)
+                  continue;
                 Seed<dim> seed{};
                 seed.position = piece.position;
                 seed.cell     = cell;
@@ -171,30 +247,46 @@ namespace impm
                       (seed.position[d] - cell->vertex(0)[d]) / seed.domain[d];
                   }
                 seeds.push_back(seed);
-                edges.push_back(edges_of<dim>(piece.area));
+                edges.push_back(edges_of(piece.area));
+                loads.push_back(bits);
               }
         unsigned int next = 0;
         sorted.insert(seeds, [&](const Seed<dim> &seed, double *fields) {
           std::fill_n(fields, n_fields, 0.);
           fields[0] = b;
-          fields[1] = find_bond(contact, bodies, b, seed);
           for (unsigned int k = 0; k < dim - 1; ++k)
-            for (unsigned int d = 0; d < dim; ++d)
-              fields[offset_edges + k * dim + d] = edges[next][k][d];
+            std::copy_n(edges[next][k].begin_raw(),
+                        dim,
+                        fields + offset_edges + k * dim);
+          if (has_pairs)
+            fields[offset_pair] =
+              find_bond(scene.contact, scene.bodies, b, seed);
+          if (has_loads)
+            {
+              fields[offset_loads] = loads[next];
+              std::copy_n(fields + offset_edges,
+                          dim * (dim - 1),
+                          fields + offset_initial_edges);
+              for (unsigned int d = 0; d < dim; ++d)
+                fields[offset_initial_position + d] = seed.position[d];
+            }
           ++next;
         });
       }
     sort();
-    check_pairs(contact, bodies);
+    check_pairs();
+    check_loads();
   }
 
   template <int dim>
   void
-  SurfacePoints<dim>::check_pairs(const ContactSpec &contact,
-                                  const Bodies<dim> &bodies) const
+  SurfacePoints<dim>::check_pairs() const
   {
-    std::vector<unsigned int> n_of_body(bodies.size()),
-      n_bonds(contact.pairs.size());
+    const auto &pairs  = scene.contact.pairs;
+    const auto &bodies = scene.bodies;
+    if (pairs.empty())
+      return;
+    std::vector<unsigned int> n_of_body(bodies.size()), n_bonds(pairs.size());
     for (unsigned int s = 0; s < size(); ++s)
       {
         ++n_of_body[body(s)];
@@ -203,9 +295,9 @@ namespace impm
       }
     Utilities::MPI::sum(n_of_body, communicator, n_of_body);
     Utilities::MPI::sum(n_bonds, communicator, n_bonds);
-    for (unsigned int q = 0; q < contact.pairs.size(); ++q)
+    for (unsigned int q = 0; q < pairs.size(); ++q)
       {
-        const auto       &pair  = contact.pairs[q];
+        const auto       &pair  = pairs[q];
         const std::string entry = "Contact/" + pair.name + "/Bodies";
         if (n_of_body[pair.body] == 0)
           throw InputError(entry,
@@ -220,6 +312,26 @@ namespace impm
                              "', whose surfaces do not touch at the start: "
                              "allowed for bonded bodies are such as do");
       }
+  }
+
+  template <int dim>
+  void
+  SurfacePoints<dim>::check_loads() const
+  {
+    const auto               &loads = scene.loads.on_surfaces;
+    std::vector<unsigned int> n_of_load(loads.size());
+    for (unsigned int s = 0; s < size(); ++s)
+      for (unsigned int l = 0; l < loads.size(); ++l)
+        n_of_load[l] += carries(s, l);
+    Utilities::MPI::sum(n_of_load, communicator, n_of_load);
+    for (unsigned int l = 0; l < loads.size(); ++l)
+      if (n_of_load[l] == 0)
+        throw InputError("Loads/" + loads[l].name + "/Where",
+                         "found no part of the surface of body '" +
+                           scene.bodies[loads[l].body].name +
+                           "' where the expression is positive (what lies on a "
+                           "face of the domain does not count where that holds "
+                           "its normal)");
   }
 
   template <int dim>
@@ -254,9 +366,43 @@ namespace impm
     for (auto &particle : sorted.particles)
       {
         data.push_back(particle.get_properties().data());
-        around.push_back(geometry == GeometryKind::axisymmetric ?
-                           2 * numbers::PI * particle.get_location()[0] :
-                           1.);
+        around.push_back(circumference(particle.get_location()));
+      }
+  }
+
+  template <int dim>
+  Footprints<dim>
+  SurfacePoints<dim>::footprints(
+    FootprintBuilder<dim>     &builder,
+    const PopulatedCells<dim> &populated,
+    const Discretization<dim> &discretization) const
+  {
+    std::vector<typename FootprintBuilder<dim>::Place> places;
+    unsigned int                                       s = 0;
+    for (const auto &particle : sorted.particles)
+      places.push_back({particle.get_location(),
+                        particle.get_surrounding_cell(),
+                        scene.bodies[body(s++)].layer});
+    return builder.build_at(places, populated, discretization);
+  }
+
+  template <int dim>
+  void
+  SurfacePoints<dim>::advance(const Footprints<dim> &footprints,
+                              const Vector          &increment)
+  {
+    std::vector<Tensor<1, dim>> ways;
+    footprints.interpolate(increment, ways);
+    const auto   deformations = footprints.deformations(increment);
+    unsigned int s            = 0;
+    for (auto &particle : sorted.particles)
+      {
+        auto edges_at_end = edges(s);
+        for (auto &edge : edges_at_end)
+          edge = deformations[s] * edge;
+        set_edges(s, edges_at_end);
+        particle.set_location(particle.get_location() + ways[s]);
+        ++s;
       }
   }
 
@@ -266,13 +412,14 @@ namespace impm
   {
     std::vector<Seed<dim>>           seeds;
     std::vector<std::vector<double>> children;
-    unsigned int                     s = 0;
+    const bool   has_loads = !scene.loads.on_surfaces.empty();
+    unsigned int s         = 0;
     for (auto &particle : sorted.particles)
       {
-        const unsigned int point   = s++;
-        const auto         cell    = particle.get_surrounding_cell();
-        const double       longest = 1.1 / bodies[body(point)].points_across;
-        auto               parts   = edges(point);
+        const unsigned int point = s++;
+        const auto         cell  = particle.get_surrounding_cell();
+        const double longest = 1.1 / scene.bodies[body(point)].points_across;
+        auto         parts   = edges(point);
         std::array<unsigned int, dim - 1> n;
         unsigned int                      n_parts = 1;
         for (unsigned int k = 0; k < dim - 1; ++k)
@@ -289,15 +436,35 @@ namespace impm
           continue;
         set_edges(point, parts);
         const Point<dim> middle = particle.get_location();
-        for (unsigned int i = 0; i < n_parts; ++i)
+        // The i-th part lies beside the middle, by so many of its own edges.
+        const auto from_middle = [&](unsigned int i, const double *edges) {
+          Tensor<1, dim> way;
+          for (unsigned int k = 0; k < dim - 1; ++k)
+            {
+              for (unsigned int d = 0; d < dim; ++d)
+                way[d] += (i % n[k] + 0.5 - 0.5 * n[k]) * edges[k * dim + d];
+              i /= n[k];
+            }
+          return way;
+        };
+        double    *fields = data[point];
+        Point<dim> initial_middle;
+        if (has_loads)
           {
-            Point<dim>   place = middle;
-            unsigned int rest  = i;
+            initial_middle = initial_position(point);
             for (unsigned int k = 0; k < dim - 1; ++k)
-              {
-                place += (rest % n[k] + 0.5 - 0.5 * n[k]) * parts[k];
-                rest /= n[k];
-              }
+              for (unsigned int d = 0; d < dim; ++d)
+                fields[offset_initial_edges + k * dim + d] /= n[k];
+          }
+        for (unsigned int i = n_parts; i-- > 0;)
+          {
+            const Point<dim> place =
+              middle + from_middle(i, fields + offset_edges);
+            if (has_loads)
+              set_vector(point,
+                         offset_initial_position,
+                         initial_middle +
+                           from_middle(i, fields + offset_initial_edges));
             if (i == 0)
               {
                 particle.set_location(place);
@@ -322,39 +489,55 @@ namespace impm
     sort();
   }
 
-  template <>
-  Tensor<1, 2>
-  SurfacePoints<2>::normal_of(const double *edges)
+  template <int dim>
+  typename SurfacePoints<dim>::Edges
+  SurfacePoints<dim>::edges_of(const Tensor<1, dim> &area)
   {
-    Tensor<1, 2> normal;
-    normal[0] = edges[1];
-    normal[1] = -edges[0];
-    return normal;
-  }
-
-  template <>
-  Tensor<1, 3>
-  SurfacePoints<3>::normal_of(const double *edges)
-  {
-    Tensor<1, 3> first, second;
-    for (unsigned int d = 0; d < 3; ++d)
+    Edges edges;
+    if constexpr (dim == 2)
       {
-        first[d]  = edges[d];
-        second[d] = edges[3 + d];
+        edges[0][0] = -area[1];
+        edges[0][1] = area[0];
       }
-    return cross_product_3d(first, second);
+    else
+      {
+        const auto   n = area / area.norm();
+        unsigned int d = 0; // the axis that is the most along the surface
+        for (unsigned int e = 1; e < dim; ++e)
+          if (std::abs(n[e]) < std::abs(n[d]))
+            d = e;
+        Tensor<1, dim> axis;
+        axis[d]  = 1;
+        edges[1] = cross_product_3d(n, axis);
+        edges[1] *= std::sqrt(area.norm()) / edges[1].norm();
+        edges[0] = cross_product_3d(edges[1], n);
+      }
+    return edges;
   }
 
   template <int dim>
   std::vector<std::string>
-  SurfacePoints<dim>::field_names()
+  SurfacePoints<dim>::field_names() const
   {
-    std::vector<std::string> names = {"body", "pair"};
-    for (unsigned int k = 1; k < dim; ++k)
-      names.insert(names.end(), dim, "edge_" + std::to_string(k));
-    names.insert(names.end(), dim, "slip");
-    names.insert(names.end(), {"contact_pressure", "gap"});
+    std::vector<std::string> names     = {"body"};
+    const auto               add_edges = [&](const std::string &name) {
+      for (unsigned int k = 1; k < dim; ++k)
+        names.insert(names.end(), dim, name + std::to_string(k));
+    };
+    add_edges("edge_");
     names.insert(names.end(), dim, "beyond_face");
+    if (!scene.contact.pairs.empty())
+      {
+        names.push_back("pair");
+        names.insert(names.end(), dim, "slip");
+        names.insert(names.end(), {"contact_pressure", "gap"});
+      }
+    if (!scene.loads.on_surfaces.empty())
+      {
+        names.push_back("loads");
+        add_edges("initial_edge_");
+        names.insert(names.end(), dim, "initial_position");
+      }
     return names;
   }
 

@@ -194,12 +194,13 @@ namespace impm
       for (const auto &body : state.rigid.bodies)
         if (body.spec->name == criterion.of && body.spec->meets_surfaces)
           {
-            const auto shift = body.displacement(0, state.time);
+            const auto motion = body.since_start(state.time);
             for_owned_cells<dim>(state, [&](const auto &cell) {
               const auto   box    = box_of<dim>(cell);
               const double radius = box.center().distance(box.vertex(0));
-              if (std::abs(body.spec->shape->proximity(box.center() - shift)
-                             .distance) <= criterion.distance + radius)
+              if (std::abs(
+                    body.spec->shape->proximity(motion.inverse(box.center()))
+                      .distance) <= criterion.distance + radius)
                 raise(levels[cell->active_cell_index()], criterion.level);
             });
             return;

@@ -42,7 +42,19 @@ namespace impm
           else if (!spec.meets_surfaces)
             points->insert(seed_body(specs, spec, geometry, grid));
           points->sort();
-          bodies.push_back({&spec, std::move(points), box});
+          double radius = 0;
+          for (const auto &particle : points->particles)
+            radius =
+              std::max(radius, particle.get_location().distance(spec.centre));
+          bodies.push_back({&spec,
+                            std::move(points),
+                            box,
+                            Utilities::MPI::max(radius, grid.communicator),
+                            {}});
+          auto &state              = bodies.back().state;
+          state.since_start.centre = spec.centre;
+          state.velocity           = spec.free_velocity;
+          state.spin               = spec.free_spin;
         }
     if (grid.is_lagrangian)
       holders_of_nodes.resize(grid.discretization()->node_positions.size());
@@ -50,15 +62,56 @@ namespace impm
   }
 
   template <int dim>
-  Tensor<1, dim>
-  RigidBodies<dim>::Body::displacement(const double from, const double to) const
+  double
+  RigidBodies<dim>::Body::angle(const double time) const
   {
-    Tensor<1, dim> displacement;
+    return spec->rotation ? spec->rotation->value(Point<1>(time)) : 0.;
+  }
+
+  template <int dim>
+  RigidMotion<dim>
+  RigidBodies<dim>::Body::motion(const double from, const double to) const
+  {
+    Tensor<1, dim> shift;
+    Point<dim>     centre = spec->centre;
     if (const auto &function = spec->displacement)
       for (unsigned int d = 0; d < dim; ++d)
-        displacement[d] =
-          function->value(Point<1>(to), d) - function->value(Point<1>(from), d);
-    return displacement;
+        {
+          const double start = function->value(Point<1>(from), d);
+          shift[d]           = function->value(Point<1>(to), d) - start;
+          centre[d] += start;
+        }
+    return {centre, shift, (angle(to) - angle(from)) * spec->axis};
+  }
+
+  template <int dim>
+  RigidMotion<dim>
+  RigidBodies<dim>::Body::since_start(const double time) const
+  {
+    return spec->is_free ? state.since_start : motion(0, time);
+  }
+
+  template <int dim>
+  RigidMotion<dim>
+  RigidBodies<dim>::Body::in_step(const double time, const double dt) const
+  {
+    if (!spec->is_free)
+      return motion(time, time + dt);
+    const auto &now = state.since_start;
+    return {now.centre + now.shift,
+            dt * state.velocity,
+            dt * state.angular_velocity()};
+  }
+
+  template <int dim>
+  double
+  RigidBodies<dim>::largest_speed() const
+  {
+    double largest = 0;
+    for (const auto &body : bodies)
+      if (body.spec->is_free)
+        largest = std::max(largest, body.state.velocity.norm());
+    return largest;
   }
 
   template <int dim>
@@ -68,9 +121,9 @@ namespace impm
     stick(to);
     for (const auto &body : bodies)
       {
-        const auto shift = body.displacement(from, to);
+        const auto motion = body.motion(from, to);
         for (auto &particle : body.points->particles)
-          particle.set_location(particle.get_location() + shift);
+          particle.set_location(motion(particle.get_location()));
         body.points->sort();
       }
   }
@@ -91,9 +144,11 @@ namespace impm
     double largest = 0;
     for (const auto &body : bodies)
       {
-        const auto displacement = body.displacement(from, to);
+        const double turn  = std::abs(body.angle(to) - body.angle(from));
+        const auto   way   = std::min(turn, 2.) * body.radius;
+        const auto   shift = body.motion(from, to).shift;
         for (unsigned int d = 0; d < dim; ++d)
-          largest = std::max(largest, std::abs(displacement[d]));
+          largest = std::max(largest, std::abs(shift[d]) + way);
       }
     return largest;
   }
@@ -105,7 +160,7 @@ namespace impm
     const auto discretization = grid.discretization();
     for (unsigned int b = 0; b < bodies.size(); ++b)
       {
-        const auto shift = bodies[b].displacement(0, time);
+        const auto shift = bodies[b].motion(0, time).shift;
         for (unsigned int n = 0; n < holders_of_nodes.size(); ++n)
           if (holders_of_nodes[n] == 0 &&
               gap(bodies[b].box, discretization->node_positions[n] - shift) <=
@@ -127,8 +182,8 @@ namespace impm
     double     part           = 1;
     for (const auto &body : bodies)
       {
-        const auto start = body.displacement(0, from),
-                   end   = body.displacement(0, to);
+        const auto start = body.motion(0, from).shift,
+                   end   = body.motion(0, to).shift;
         for (unsigned int n = 0; n < holders_of_nodes.size(); ++n)
           {
             const auto first = constrained.begin() + dim * n;

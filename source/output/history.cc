@@ -187,6 +187,27 @@ namespace impm
   }
 
   template <int dim>
+  void
+  add(const RigidBodies<dim> &rigid, Totals<dim> &totals)
+  {
+    for (const auto &body : rigid.bodies)
+      if (body.spec->is_free)
+        {
+          const auto &inertia = body.spec->inertia;
+          const auto &state   = body.state;
+          const auto place = state.since_start.centre + state.since_start.shift;
+          const auto momentum = inertia.mass * state.velocity;
+          const auto spin     = inertia.tensor * state.spin;
+          totals.mass += inertia.mass;
+          totals.momentum += momentum;
+          totals.angular_momentum += moment_of<dim>(place, momentum) +
+                                     turned_to_space(state.since_start, spin);
+          totals.kinetic_energy +=
+            0.5 * (momentum * state.velocity + spin * state.spin);
+        }
+  }
+
+  template <int dim>
   std::vector<std::string>
   History<dim>::column_names(const Scene<dim> &scene)
   {
@@ -213,6 +234,7 @@ namespace impm
     : output(scene.output)
     , bodies(scene.bodies)
     , points(points)
+    , rigid(rigid)
     , grid(grid)
     , names(column_names(scene))
     , followed(scene.output.probes.size(), -1)
@@ -225,7 +247,8 @@ namespace impm
                                                body.material->has_potential();
                                       }))
   {
-    const auto at_start  = total(points);
+    auto at_start = total(points);
+    add(rigid, at_start);
     start_kinetic_energy = at_start.kinetic_energy;
     budget.begin(all_energy(at_start));
     may_drift = !grid.is_lagrangian && deformation_drift(bodies, points) < 1e-3;
@@ -290,6 +313,7 @@ namespace impm
   template <int dim>
   void
   History<dim>::take_figures(const StepProblem<dim> &problem,
+                             const Vector           &u,
                              const Vector           &forces)
   {
     potential = problem.response.potential;
@@ -306,8 +330,7 @@ namespace impm
           std::sqrt(std::inner_product(n.begin(), n.end(), n.begin(), 0.));
         // What the carrier exerts balances the material: the force on it is
         // the opposite.
-        reactions[r] =
-          -spec.factor / norm * problem.reaction(spec.on, forces, n);
+        reactions[r] = -spec.factor / norm * problem.reaction(spec, u, forces);
       }
   }
 
@@ -318,8 +341,9 @@ namespace impm
     // Points that split or merge have another energy than in the step.
     const bool is_known =
       potential_is_energy && report.splits == 0 && report.merges == 0;
-    const auto totals =
+    auto totals =
       total(points, is_known ? std::optional(potential) : std::nullopt);
+    add(rigid, totals);
     if (!std::isfinite(all_energy(totals)))
       throw ComputationError("at t = " + Utilities::to_string(report.time) +
                              " s: the energy of the points is no finite "
@@ -362,6 +386,10 @@ namespace impm
 
   template class History<2>;
   template class History<3>;
+  template void
+  add(const RigidBodies<2> &, Totals<2> &);
+  template void
+                              add(const RigidBodies<3> &, Totals<3> &);
   template decltype(total<2>) total<2>;
   template decltype(total<3>) total<3>;
 } // namespace impm

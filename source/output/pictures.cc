@@ -168,7 +168,7 @@ namespace impm
     save("particles", writer);
     if (surfaces)
       {
-        const auto        names_of_surfaces = SurfacePoints<dim>::field_names();
+        const auto        names_of_surfaces = surfaces->field_names();
         std::vector<Kind> kinds;
         for (const auto &field : names_of_surfaces)
           kinds.push_back(std::count(names_of_surfaces.begin(),

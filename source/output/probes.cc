@@ -42,6 +42,29 @@ namespace impm
         consider(square, id);
       return best.second;
     }
+
+    template <int dim>
+    double
+    motion_of(const typename RigidBodies<dim>::Body &body,
+              const ProbeSpec                       &spec,
+              const double                           time)
+    {
+      const unsigned int c       = spec.component;
+      const bool         is_free = body.spec->is_free;
+      switch (spec.quantity)
+        {
+          case ProbeSpec::Quantity::velocity:
+            return body.state.velocity[c];
+          case ProbeSpec::Quantity::angular_velocity:
+            return body.state.angular_velocity()[c];
+          case ProbeSpec::Quantity::rotation:
+            return !is_free ? body.angle(time) * body.spec->axis[c] :
+                   dim == 2 ? body.state.angles[c] :
+                              body.state.since_start.rotation_vector()[c];
+          default:
+            return body.since_start(time).shift[c];
+        }
+    }
   } // namespace
 
   template <int dim>
@@ -65,8 +88,8 @@ namespace impm
               };
         for (const auto &body : rigid.bodies)
           if (body.spec->name == spec.of)
-            return [&body, component](const double time) {
-              return body.displacement(0, time)[component];
+            return [&body, &spec](const double time) {
+              return motion_of<dim>(body, spec, time);
             };
       }
 

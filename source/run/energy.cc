@@ -35,6 +35,9 @@ namespace impm
         const double w = result.velocity.local_element(i);
         gain += 0.5 * motion.mass.local_element(i) * (w - v) * (w + v);
       }
+    if (problem->free_bodies &&
+        Utilities::MPI::this_mpi_process(communicator) == 0)
+      gain += problem->free_bodies->kinetic_gain();
     // Work is known by its forces at both ends only, and points that come to a
     // new grid are out of balance: what a step is given may be twice as much.
     return Utilities::MPI::sum(gain, communicator) - step_work.external -

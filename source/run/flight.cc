@@ -91,16 +91,14 @@ namespace impm
         boxes.add(body, particle.get_location() + increments[p++], extent);
       }
     for (unsigned int b = 0; b < n_rigid; ++b)
-      for (const auto &particle : rigid.bodies[b].points->particles)
-        {
-          const auto place = particle.get_location();
-          boxes.add(n + b, place, 0);
-          boxes.add(n + b,
-                    place +
-                      rigid.bodies[b].displacement(problem.time,
-                                                   problem.time + problem.dt),
-                    0);
-        }
+      {
+        const auto motion =
+          rigid.bodies[b].motion(problem.time, problem.time + problem.dt);
+        for (const auto &particle : rigid.bodies[b].points->particles)
+          for (const auto &place :
+               {particle.get_location(), motion(particle.get_location())})
+            boxes.add(n + b, place, 0);
+      }
     boxes.exchange(grid.communicator);
 
     std::vector<unsigned int> ranks(n), parents(n);

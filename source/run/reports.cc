@@ -16,6 +16,21 @@ namespace impm
 {
   using namespace dealii;
 
+  namespace
+  {
+    /** Of all points that carry a load at the start (m^2). Collective. */
+    template <int dim>
+    double
+    area_under(const unsigned int load, const SurfacePoints<dim> &surfaces)
+    {
+      double area = 0;
+      for (unsigned int s = 0; s < surfaces.size(); ++s)
+        if (surfaces.carries(s, load))
+          area += surfaces.initial_area(s);
+      return Utilities::MPI::sum(area, surfaces.communicator);
+    }
+  } // namespace
+
   template <int dim>
   void
   Simulation<dim>::describe()
@@ -34,6 +49,9 @@ namespace impm
     for (unsigned int t = 0; t < counts.size(); ++t)
       text << "  traction " << scene.loads.tractions[t].name << ": on "
            << counts[t] << " points\n";
+    for (unsigned int l = 0; l < scene.loads.on_surfaces.size(); ++l)
+      text << "  load " << scene.loads.on_surfaces[l].name << ": on "
+           << area_under(l, *surfaces) << " m^2 of the surface\n";
     text << "  fields of a point:\n";
     for (const auto &field : points.layout.fields())
       text << "    " << field.name << " (" << field.n_components << ")\n";
@@ -163,6 +181,32 @@ namespace impm
              Utilities::to_string(time + report.dt) +
              " s: steps are too long for what comes together, or the pressure "
              "is beyond the modulus of the material");
+    if (problem->spring_share >= 1e-3)
+      warn(
+        "springs that hold pieces",
+        "springs that hold pieces of material that nothing else holds take " +
+          Utilities::to_string(100 * problem->spring_share) +
+          " % of the force of contact at t = " +
+          Utilities::to_string(time + report.dt) +
+          " s: a piece slides away under its load without inertia");
+    if (!problem->free_bodies)
+      return;
+    for (const auto &body : rigid.bodies)
+      if (const auto &box = body.spec->shape->bounding_box;
+          body.spec->is_free && box)
+        for (unsigned int f = 0; f < 2 * dim; ++f)
+          for (unsigned int v = 0; v < (1u << dim); ++v)
+            {
+              const auto   place = body.state.since_start(box->vertex(v));
+              const double beyond =
+                (f % 2 == 0 ? -1 : 1) * (place[f / 2] - grid.face_position(f));
+              if (scene.faces[f].constrained[f / 2] && beyond > 0)
+                warn("face and " + body.spec->name,
+                     "free rigid body '" + body.spec->name +
+                       "' reaches beyond face '" + scene.faces[f].name +
+                       "' of the domain, which holds deformable bodies alone: "
+                       "it passes through");
+            }
   }
 
   template <int dim>

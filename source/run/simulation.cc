@@ -4,6 +4,7 @@
 #include <impm/base/exceptions.h>
 #include <impm/base/files.h>
 #include <impm/footprints/transfer.h>
+#include <impm/grid/grips.h>
 #include <impm/grid/touching.h>
 #include <impm/run/motion_limits.h>
 #include <impm/run/run_directory.h>
@@ -75,10 +76,9 @@ namespace impm
     , policy(other_policy ? std::move(other_policy) : make_policy(scene))
     , points(seed_points(scene, *policy, grid))
     , rigid(scene.bodies, scene.geometry, grid)
-    , surfaces(scene.contact.pairs.empty() ?
-                 nullptr :
-                 std::make_unique<SurfacePoints<dim>>(
-                   scene.contact, scene.bodies, scene.geometry, grid))
+    , surfaces(SurfacePoints<dim>::exist_in(scene) ?
+                 std::make_unique<SurfacePoints<dim>>(scene, grid) :
+                 nullptr)
     , balance(grid, points)
     , integrator(make_time_integrator(scene.time))
     , control(scene.time, integrator->order())
@@ -88,13 +88,16 @@ namespace impm
     , reference(scene, points, history)
     , console(verbosity, Utilities::MPI::this_mpi_process(communicator) == 0)
     , warnings(scene.warnings)
-  {}
+  {
+    check_grips(scene.grips, points);
+  }
 
   template <int dim>
   double
   Simulation<dim>::cfl_unit() const
   {
-    return grid.discretization()->smallest_cell_extent / points.largest_speed();
+    return grid.discretization()->smallest_cell_extent /
+           std::max(points.largest_speed(), rigid.largest_speed());
   }
 
   template <int dim>
@@ -366,7 +369,7 @@ namespace impm
     report.stabilization_work = work.stabilization;
     report.uncertain_work     = work.uncertain;
     watch_contact();
-    history.take_figures(*problem, end_forces);
+    history.take_figures(*problem, result.increment, end_forces);
     watch_faces();
     // While points are in the order of their footprints.
     if (row_is_due(report.step, time + report.dt))
@@ -398,9 +401,13 @@ namespace impm
     const double       end = time + report.dt;
     is_between_steps       = false;
     advance_points(*problem, result, increments, scene.time, points);
+    if (problem->contact)
+      problem->contact->remember_meetings(*surfaces);
     if (surfaces)
-      problem->contact->advance(result.increment, *surfaces);
+      surfaces->advance(*problem->surface_prints, result.increment);
     policy->advance(grid, result, time, end);
+    if (problem->free_bodies)
+      problem->free_bodies->advance(rigid);
     rigid.move(time, end);
     if (is_off_grid() && off_grid.n_steps++ == 0)
       off_grid.start = time;

@@ -32,6 +32,12 @@ namespace impm
           return NewtonSolver(spec, problem.balance, timer).solve(u);
         };
         result = solve();
+        // Springs hold what nothing holds, but only till contact does.
+        const unsigned int most_for_springs = 10;
+        for (unsigned int i = 0; i < most_for_springs && result.converged &&
+                                 problem.relax_springs(u);
+             ++i)
+          result.append(solve());
         // Friction has an energy only where the pressure is known.
         const unsigned int most = 50;
         for (unsigned int i = 0; problem.contact && result.converged &&
@@ -43,6 +49,18 @@ namespace impm
               result.append(solve());
             else
               result.fail("friction does not settle");
+          }
+        if (const auto *free = problem.free_bodies.get())
+          {
+            if (!result.converged && !free->unsettled.empty())
+              result.fail("the motion of the rigid body '" + free->unsettled +
+                          "' does not settle");
+            const auto name =
+              free->gone_astray(problem.discretization->smallest_cell_extent);
+            if (result.converged && !name.empty())
+              result.fail("the rigid body '" + name +
+                          "' goes further than a cell from where it was looked "
+                          "for");
           }
       }
     problem.discretization->interpolate_hanging(u);

@@ -94,21 +94,32 @@ namespace impm
       add_bodies(top, scene.bodies, shapes, materials, scene.grid);
       add_adaptation(top, scene.adaptation, scene.grid, scene.bodies);
       scene.grid.finest_level = scene.adaptation.highest;
-      add_boundary_conditions(top, scene.faces, scene.grid, scene.warnings);
+      add_boundary_conditions(top,
+                              scene.faces,
+                              scene.grips,
+                              scene.bodies,
+                              scene.grid,
+                              scene.warnings);
       add_contact(top,
                   scene.contact,
                   scene.bodies,
                   scene.faces,
                   scene.grid,
                   scene.warnings);
-      add_loads(top, scene.loads, scene.bodies, lagrangian);
+      add_loads(top, scene.loads, scene.bodies, scene.grid, scene.geometry);
       add_time(top, scene.time, lagrangian, scene.warnings);
       choose_touch(scene);
       check_reset(top, scene);
       check_contact(top, scene);
-      add_solver(top, scene.solver, scene.time, scene.bodies);
+      add_solver(top,
+                 scene.solver,
+                 scene.time,
+                 scene.bodies,
+                 scene.loads.follow_surfaces() ||
+                   any_of(scene.faces,
+                          [](const auto &face) { return face.is_pressed; }));
       add_stabilization(top, scene.stabilization, scene.time, lagrangian);
-      add_output(top, scene.output, scene.faces, scene.bodies);
+      add_output(top, scene.output, scene.faces, scene.grips, scene.bodies);
       add_references(top, scene.references, parameter_file);
 
       // Nothing else holds what no body and no other shape uses.
@@ -181,6 +192,7 @@ namespace impm
     const bool needs_initial_position =
       // by which they know how far their deformation has drifted
       !scene.grid.is_lagrangian() || scene.loads.body_force_is_initial ||
+      !scene.grips.empty() ||
       any_of(scene.loads.tractions,
              [](const auto &traction) { return traction.is_initial; }) ||
       any_of(scene.output.point_fields,

@@ -71,6 +71,13 @@ namespace impm
   void
   LinearSolver::take_tangent()
   {
+    take_sparse_tangent();
+    take_correction();
+  }
+
+  void
+  LinearSolver::take_sparse_tangent()
+  {
     ++system.counts->tangents;
     is_factorized = false;
     if (needs_matrix)
@@ -186,8 +193,51 @@ namespace impm
     return control.last_step();
   }
 
+  void
+  LinearSolver::take_correction()
+  {
+    // A difference quotient has all of the tangent.
+    if (spec.tangent == TangentKind::difference_quotient)
+      return;
+    correction           = system.correction();
+    const unsigned int n = correction.left.size();
+    of_correction.reinit(n, n);
+    for (auto &left : correction.left)
+      {
+        Vector answer = left;
+        correction_iterations += solve_sparse(answer, left);
+        system.set_zero(answer);
+        left.swap(answer);
+      }
+    for (unsigned int i = 0; i < n; ++i)
+      for (unsigned int j = 0; j < n; ++j)
+        of_correction(i, j) =
+          (i == j ? 1. : 0.) + correction.right[i] * correction.left[j];
+    if (n > 0)
+      of_correction.gauss_jordan();
+  }
+
   unsigned int
   LinearSolver::solve(Vector &x, const Vector &b)
+  {
+    unsigned int n_iterations = solve_sparse(x, b);
+    n_iterations += correction_iterations;
+    correction_iterations = 0;
+    std::vector<double> products;
+    for (const auto &right : correction.right)
+      products.push_back(right * x);
+    for (unsigned int i = 0; i < products.size(); ++i)
+      {
+        double factor = 0;
+        for (unsigned int j = 0; j < products.size(); ++j)
+          factor += of_correction(i, j) * products[j];
+        x.add(-factor, correction.left[i]);
+      }
+    return n_iterations;
+  }
+
+  unsigned int
+  LinearSolver::solve_sparse(Vector &x, const Vector &b)
   {
     const bool is_direct = kind == LinearSolverKind::direct;
     solution             = 0;

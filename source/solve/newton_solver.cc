@@ -32,6 +32,8 @@ namespace impm
     // A quotient of residuals is no derivative of the potential.
     , has_potential(system.has_potential() &&
                     spec.tangent != TangentKind::difference_quotient)
+    , has_guide(system.has_guide() &&
+                spec.tangent != TangentKind::difference_quotient)
     , uses_bfgs(spec.bfgs_updates > 0)
     , test(spec)
     , linear_solver(spec, system, timer)
@@ -264,7 +266,11 @@ namespace impm
   NewtonSolver::backtrack(const Vector &u, const double slope, Evaluation &now)
   {
     const Evaluation before       = now;
-    const bool       by_potential = has_potential && slope < 0;
+    const bool       by_potential = has_guide && slope < 0;
+    // What is a potential but nearly may be wrong about short steps.
+    const auto enough = [&](const double part) {
+      return has_potential ? 0.1 : 1 - 1e-4 * part;
+    };
     // Energies cancel to round-off near the solution: hence the slack.
     const double slack =
       1e-9 * std::abs(slope) + 1e-13 * std::abs(before.potential);
@@ -274,7 +280,7 @@ namespace impm
       if (by_potential)
         return now.potential <=
                  before.potential + 1e-4 * part * slope + slack ||
-               now.residual <= 0.1 * before.residual;
+               now.residual <= enough(part) * before.residual;
       return now.residual <= (1 - 1e-4 * part) * before.residual;
     };
     const double shortest = 1. / 1024;

@@ -40,6 +40,7 @@ namespace impm
       double                        end_weight; ///< w
       bool minds_forces_at_work; ///< whether residuals are small beside these
       bool has_potential;
+      bool has_guide;     ///< whether it has one nearly
       bool has_rotations; ///< whether a rotation of the body is free
     };
 
@@ -80,6 +81,12 @@ namespace impm
       return parts.has_potential;
     }
 
+    bool
+    has_guide() const override
+    {
+      return parts.has_guide;
+    }
+
     double
     work_along(const Vector &direction, const Vector &force) const override;
 
@@ -115,6 +122,9 @@ namespace impm
 
     void
     assemble(SparseMatrix &matrix) const override;
+
+    LowRank
+    correction() const override;
 
     /** Translations and, where they are free, rotations. */
     std::vector<std::vector<double>>

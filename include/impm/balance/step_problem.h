@@ -32,6 +32,12 @@ namespace impm
   class Contact;
 
   template <int dim>
+  class FollowingLoads;
+
+  template <int dim>
+  class FreeBodies;
+
+  template <int dim>
   class SurfacePoints;
 
   /**
@@ -99,13 +105,24 @@ namespace impm
                0.;
     }
 
-    /** Component along `direction` of what a face or a rigid body, by its name,
-     * exerts by what it holds, in end_forces(), and by contact (N). Collective.
-     */
+    /** What a face or a rigid body exerts by what it holds, in end_forces(),
+     * and by contact (N), or its moment (N m), along a direction as it is
+     * given; after a step that has converged at `u`. Collective. */
     double
-    reaction(const std::string         &name,
-             const Vector              &end_forces,
-             const std::vector<double> &direction) const;
+    reaction(const ReactionSpec &spec,
+             const Vector       &u,
+             const Vector       &end_forces) const;
+
+    /**
+     * After a step has converged at `u`: lets the springs of pieces that
+     * nothing holds but contact be at rest there, and returns whether they took
+     * so much of its force that the step is to be solved anew. Collective.
+     */
+    bool
+    relax_springs(const Vector &u);
+
+    /** Part of the force of contact that the springs took last. */
+    double spring_share = 0;
 
     /** Those of the terms that are no physics: ghost penalty, springs of pieces
      * that nothing holds and of damping. */
@@ -138,22 +155,38 @@ namespace impm
     /** Neither constrained nor unused, of all ranks. */
     const unsigned int n_active_dofs;
 
+    /** Of the points of surfaces, or null if there are none. */
+    const std::unique_ptr<const Footprints<dim>> surface_prints;
+
     // The terms of the balance, or null.
     const std::unique_ptr<InternalForces<dim>> internal_forces;
     const std::unique_ptr<GhostPenalty<dim>>   ghost_penalty;
     const std::unique_ptr<Loads<dim>>          loads;
-    const std::unique_ptr<Contact<dim>>        contact;
+    const std::unique_ptr<FollowingLoads<dim>> following_loads;
+    /** Which contact moves, or null. */
+    const std::unique_ptr<FreeBodies<dim>> free_bodies;
+    const std::unique_ptr<Contact<dim>>    contact;
 
     const Vector start_forces; ///< f(0) (N), if asked for, or empty
     /** What the integrator takes for the acceleration at the start: gathered,
      * or from the forces then (m/s^2). */
     const Vector                                        start_acceleration;
     unsigned int                                        n_held_cells = 0;
+    const bool                                          is_damped;
     const std::unique_ptr<NodalForces>                  nodal_forces;
     const std::unique_ptr<const VelocitySmoothing<dim>> smoothing; ///< or null
     MomentumBalance<dim>                                balance;
 
   private:
+    /** Throws ComputationError, on every rank alike, for loads that are no
+     * finite numbers. */
+    void
+    check_loads() const;
+
+    /** Whether there is a potential but for loads that follow surfaces. */
+    bool
+    has_guide() const;
+
     /** Finds the stresses at the start; returns f(0), if it is asked for. */
     Vector
     find_start_forces();

@@ -5,9 +5,11 @@
 #include <impm/footprints/footprint_builder.h>
 #include <impm/grid/populated_cells.h>
 #include <impm/grid/rigid_bodies.h>
+#include <impm/grid/rigid_motion.h>
 #include <impm/scene/scene.h>
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 namespace impm
@@ -18,16 +20,21 @@ namespace impm
   {
     /** Of a place, to where it is at the start of the step. */
     std::function<Proximity<dim>(const dealii::Point<dim> &)> proximity;
-    dealii::Tensor<1, dim> displacement; ///< in the step (m)
+    RigidMotion<dim> motion; ///< in the step; of a free body a guess
+    /** Among the free bodies of the scene, if it is one. */
+    std::optional<unsigned int> free_body;
   };
 
   /**
    * What may meet in a step: a point of a surface and, on the other side, an
    * obstacle or nodes. The way of the surface along the other one is
    *
-   *   w = sum_k c_k u_k - (displacement of the obstacle),
+   *   w = sum_k c_k u_k,
    *
-   * linear in the increments of some nodes.
+   * linear in the increments of some nodes, and along an obstacle as one sees
+   * it that goes with it and turns as it does,
+   *
+   *   w = M^-1(x + sum_k c_k u_k) - x,   M the obstacle's motion in the step.
    */
   template <int dim>
   struct ContactLink
@@ -60,10 +67,11 @@ namespace impm
   {
   public:
     /** For the step from `time` to `time + dt`. `points` are in the cells of
-     * the grid. Collective. */
+     * the grid, with these footprints. Collective. */
     ContactLinks(const Scene<dim>          &scene,
                  const BackgroundGrid<dim> &grid,
                  const SurfacePoints<dim>  &points,
+                 const Footprints<dim>     &prints,
                  const RigidBodies<dim>    &rigid,
                  const PopulatedCells<dim> &populated,
                  const Discretization<dim> &discretization,
@@ -76,7 +84,6 @@ namespace impm
     std::vector<double>           coefficients; ///< c_k
 
     std::vector<Obstacle<dim>> obstacles; ///< by pair; unused of bodies
-    Footprints<dim>            prints;    ///< of all points of surfaces
 
   private:
     /** Adds the nodes of a place that touches one cell. */

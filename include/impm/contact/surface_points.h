@@ -1,30 +1,40 @@
 #ifndef impm_contact_surface_points_h
 #define impm_contact_surface_points_h
 
-#include <impm/input/sections/contact.h>
+#include <impm/footprints/footprint_builder.h>
 #include <impm/points/material_points.h>
+#include <impm/scene/scene.h>
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 namespace impm
 {
   /**
-   * The surfaces of bodies that meet others there: points without mass, each of
-   * which stands for a piece of a surface. They go with the nodes of their body
-   * and carry what outlives a step.
+   * The surfaces of bodies that meet others there or carry loads: points
+   * without mass, each of which stands for a piece of a surface. They go with
+   * the nodes of their body and carry what outlives a step: what they meet,
+   * where there is contact, and where they were at the start, where there are
+   * loads.
    */
   template <int dim>
   class SurfacePoints
   {
   public:
+    /** Whether a scene has any. */
+    static bool
+    exist_in(const Scene<dim> &scene)
+    {
+      return !scene.contact.pairs.empty() || !scene.loads.on_surfaces.empty();
+    }
+
     /** Covers the surfaces of the shapes, a piece for each part of a cell that
-     * a material point stands for. Throws InputError for a body without any
-     * surface, and for bonded ones that do not touch. Collective. */
-    SurfacePoints(const ContactSpec         &contact,
-                  const Bodies<dim>         &bodies,
-                  GeometryKind               geometry,
-                  const BackgroundGrid<dim> &grid);
+     * a material point stands for: all of them of bodies that meet others, else
+     * where loads act. Throws InputError for a body without any surface, for
+     * bonded ones that do not touch, and for a load that acts nowhere.
+     * Collective. */
+    SurfacePoints(const Scene<dim> &scene, const BackgroundGrid<dim> &grid);
 
     /** Sorts the points into cells, takes their addresses, and lets ranks know
      * those near their cells. Those that are a little beyond a face of the
@@ -47,8 +57,8 @@ namespace impm
     /** Where a point is (m), be it beyond a face of the domain on which it
      * presses. */
     template <typename Particle>
-    static dealii::Point<dim>
-    place(const Particle &particle)
+    dealii::Point<dim>
+    place(const Particle &particle) const
     {
       auto          place  = particle.get_location();
       const double *fields = particle.get_properties().data();
@@ -85,7 +95,7 @@ namespace impm
     dealii::Tensor<1, dim>
     area(const unsigned int point) const
     {
-      return around[point] * normal_of(data[point] + offset_edges);
+      return around[point] * normal_of(edges(point));
     }
 
     /** Edges of a piece of surface (m), one after the other. */
@@ -94,10 +104,7 @@ namespace impm
     Edges
     edges(const unsigned int point) const
     {
-      Edges result;
-      for (unsigned int k = 0; k < dim - 1; ++k)
-        result[k] = vector(point, offset_edges + k * dim);
-      return result;
+      return edges_in(data[point] + offset_edges);
     }
 
     void
@@ -105,6 +112,41 @@ namespace impm
     {
       for (unsigned int k = 0; k < dim - 1; ++k)
         set_vector(point, offset_edges + k * dim, edges[k]);
+    }
+
+    /** Where the points touch the nodes of their bodies. */
+    Footprints<dim>
+    footprints(FootprintBuilder<dim>     &builder,
+               const PopulatedCells<dim> &populated,
+               const Discretization<dim> &discretization) const;
+
+    /** Moves points and edges in a step, of which these are the footprints.
+     * They have to be sorted then. */
+    void
+    advance(const Footprints<dim> &footprints, const Vector &increment);
+
+    /** Whether a load, by its number, acts on a point. */
+    bool
+    carries(const unsigned int point, const unsigned int load) const
+    {
+      return (static_cast<std::uint64_t>(data[point][offset_loads]) >> load) &
+             1;
+    }
+
+    /** Where loads act, that of the start (m^2; of the whole ring in
+     * axisymmetry, per metre of thickness in the plane). */
+    double
+    initial_area(const unsigned int point) const
+    {
+      return circumference(initial_position(point)) *
+             normal_of(edges_in(data[point] + offset_initial_edges)).norm();
+    }
+
+    /** Likewise (m). */
+    dealii::Point<dim>
+    initial_position(const unsigned int point) const
+    {
+      return dealii::Point<dim>(vector(point, offset_initial_position));
     }
 
     /** Of friction, before it gives way, or of a bond: how far the other
@@ -126,7 +168,7 @@ namespace impm
     int
     pair(const unsigned int point) const
     {
-      return static_cast<int>(data[point][1]);
+      return static_cast<int>(data[point][offset_pair]);
     }
 
     /** What a point has met. */
@@ -141,10 +183,54 @@ namespace impm
     void
     set_meeting(const unsigned int point, const Meeting &meeting)
     {
-      data[point][1] = meeting.pair;
+      data[point][offset_pair] = meeting.pair;
       set_vector(point, offset_slip, meeting.slip);
       data[point][offset_pressure] = meeting.pressure;
       data[point][offset_gap]      = meeting.gap;
+    }
+
+    // Within the fields of a point: body, and these.
+    static constexpr unsigned int offset_edges = 1;
+    static constexpr unsigned int offset_beyond =
+      offset_edges + dim * (dim - 1);
+    // With contact: pair and what follows.
+    static constexpr unsigned int offset_pair     = offset_beyond + dim;
+    static constexpr unsigned int offset_slip     = offset_pair + 1;
+    static constexpr unsigned int offset_pressure = offset_slip + dim;
+    static constexpr unsigned int offset_gap      = offset_pressure + 1;
+    // With loads: a bit for each that acts, and what follows.
+    const unsigned int offset_loads, offset_initial_edges,
+      offset_initial_position;
+    const unsigned int n_fields;
+
+    /** Names of the fields, one for each component. */
+    std::vector<std::string>
+    field_names() const;
+
+    /** A square with this outward normal times area. */
+    static Edges
+    edges_of(const dealii::Tensor<1, dim> &area);
+
+    /** Edges as they stand in fields. */
+    static Edges
+    edges_in(const double *fields)
+    {
+      Edges result;
+      for (auto &edge : result)
+        for (unsigned int d = 0; d < dim; ++d)
+          edge[d] = *fields++;
+      return result;
+    }
+
+    /** Outward normal times area of a piece in the plane or in space, given its
+     * edges. */
+    static dealii::Tensor<1, dim>
+    normal_of(const Edges &edges)
+    {
+      if constexpr (dim == 2)
+        return dealii::cross_product_2d(edges[0]);
+      else
+        return dealii::cross_product_3d(edges[0], edges[1]);
     }
 
     SortedParticles<dim> sorted;
@@ -152,30 +238,25 @@ namespace impm
     const bool           sees_others; ///< surfaces of other bodies
     const MPI_Comm       communicator;
 
-    // Within the fields of a point: body, pair, and these.
-    static constexpr unsigned int offset_edges = 2;
-    static constexpr unsigned int offset_slip  = offset_edges + dim * (dim - 1);
-    static constexpr unsigned int offset_pressure = offset_slip + dim;
-    static constexpr unsigned int offset_gap      = offset_pressure + 1;
-    static constexpr unsigned int offset_beyond   = offset_gap + 1;
-    static constexpr unsigned int n_fields        = offset_beyond + dim;
-
-    /** Names of the fields, one for each component. */
-    static std::vector<std::string>
-    field_names();
-
-    /** Outward normal times area of a piece in the plane or in space, given its
-     * edges. */
-    static dealii::Tensor<1, dim>
-    normal_of(const double *edges);
-
   private:
     /** Throws InputError where a pair of the scene could never do anything, on
      * every rank alike. Collective. */
     void
-    check_pairs(const ContactSpec &contact, const Bodies<dim> &bodies) const;
+    check_pairs() const;
 
-    const Bodies<dim>         &bodies;
+    /** The same for loads. */
+    void
+    check_loads() const;
+
+    double
+    circumference(const dealii::Point<dim> &place) const
+    {
+      return geometry == GeometryKind::axisymmetric ?
+               2 * dealii::numbers::PI * place[0] :
+               1.;
+    }
+
+    const Scene<dim>          &scene;
     const BackgroundGrid<dim> &grid;
 
     dealii::Tensor<1, dim>

@@ -3,6 +3,7 @@
 
 #include <deal.II/base/bounding_box.h>
 
+#include <impm/grid/rigid_motion.h>
 #include <impm/points/material_points.h>
 
 #include <memory>
@@ -10,8 +11,35 @@
 
 namespace impm
 {
+  /** Where a free rigid body is and how it moves. Rates of turning are those
+   * of axes that are fixed to the body. */
+  template <int dim>
+  struct RigidState
+  {
+    RigidMotion<dim>       since_start;
+    RotationVector         angles; ///< of all turns since the start, summed up
+    dealii::Tensor<1, dim> velocity, acceleration; ///< of the centre
+    RotationVector         spin, spin_acceleration;
+
+    /** Angular velocity in space (rad/s). */
+    RotationVector
+    angular_velocity() const
+    {
+      return turned_to_space(since_start, spin);
+    }
+
+    template <class Archive>
+    void
+    serialize(Archive &archive, const unsigned int /*version*/)
+    {
+      archive &since_start.centre &since_start.shift   &since_start
+        .turning &angles &velocity &acceleration &spin &spin_acceleration;
+    }
+  };
+
   /**
-   * Bodies that move as prescribed. They are made of points, which impose their
+   * Bodies that move as prescribed, and such as forces move (see FreeBodies).
+   * The former are made of points, which impose their
    * motion on every node of the cells that they touch (Sulsky & Kaul 2004, sec.
    * 3.2.7) and have no fields.
    *
@@ -30,13 +58,27 @@ namespace impm
 
     struct Body
     {
-      /** Displacement from one time to another (m). */
-      dealii::Tensor<1, dim>
-      displacement(double from, double to) const;
+      /** From one time to another, if it is prescribed. */
+      RigidMotion<dim>
+      motion(double from, double to) const;
+
+      /** Turn about its axis since the start (rad), if it is prescribed. */
+      double
+      angle(double time) const;
+
+      /** To a time; to where it is now, if it is free. */
+      RigidMotion<dim>
+      since_start(double time) const;
+
+      /** In the step from a time on; of a free body what it does by itself. */
+      RigidMotion<dim>
+      in_step(double time, double dt) const;
 
       const BodySpec<dim>                  *spec;
       std::unique_ptr<SortedParticles<dim>> points;
       dealii::BoundingBox<dim> box; ///< at the start, to a Lagrangian grid
+      double radius = 0; ///< of a ball about the centre that has all points (m)
+      RigidState<dim> state; ///< if it is free
     };
 
     /**
@@ -51,7 +93,22 @@ namespace impm
     void
     sort();
 
-    /** Largest component of any displacement from one time to another (m). */
+    /** Of free bodies (m/s). */
+    double
+    largest_speed() const;
+
+    /** States of free bodies. */
+    template <class Archive>
+    void
+    serialize(Archive &archive, const unsigned int /*version*/)
+    {
+      for (auto &body : bodies)
+        if (body.spec->is_free)
+          archive &body.state;
+    }
+
+    /** Bound of the components of the ways of all points from one time to
+     * another (m). */
     double
     largest_displacement(double from, double to) const;
 

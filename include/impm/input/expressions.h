@@ -22,7 +22,8 @@ namespace impm
    * Reads an entry with expressions between semicolons, in x, y, z (or in t
    * alone when n_variables = 1), in t if wanted, and in named constants. Null
    * when the entry is empty. Throws InputError with the entry's bare name for
-   * a wrong number of expressions or one that cannot be evaluated.
+   * a wrong number of expressions or one that cannot be evaluated. With `held`,
+   * the word `free` may stand for one, which is 0 then, and not held.
    */
   template <int n_variables>
   std::shared_ptr<dealii::FunctionParser<n_variables>>
@@ -30,13 +31,14 @@ namespace impm
                    const std::string                   &entry,
                    const unsigned int                   n_components,
                    const bool                           with_time,
-                   const std::map<std::string, double> &constants)
+                   const std::map<std::string, double> &constants,
+                   bool                                *held = nullptr)
   {
     using Parser           = dealii::FunctionParser<n_variables>;
     const std::string text = prm.get(entry);
     if (text.empty())
       return nullptr;
-    const auto expressions = dealii::Utilities::split_string_list(text, ';');
+    auto expressions = dealii::Utilities::split_string_list(text, ';');
     if (expressions.size() != n_components)
       throw InputError(entry,
                        "found '" + text + "', allowed " +
@@ -44,6 +46,13 @@ namespace impm
                             "is one expression" :
                             "are " + std::to_string(n_components) +
                               " expressions between semicolons"));
+
+    for (unsigned int c = 0; held != nullptr && c < n_components; ++c)
+      if (expressions[c] == "free")
+        {
+          held[c]        = false;
+          expressions[c] = "0";
+        }
 
     const std::string variables =
       n_variables == 1 ?
@@ -99,6 +108,14 @@ namespace impm
       if (std::regex_search(expression, word))
         return true;
     return false;
+  }
+
+  /** Whether it has one value everywhere. */
+  template <int n_variables>
+  bool
+  is_uniform(const dealii::FunctionParser<n_variables> &function)
+  {
+    return !names_any_of(function, "x|y|z|rand|rand_seed");
   }
 } // namespace impm
 

@@ -63,7 +63,7 @@ namespace impm
     }
   };
 
-  /** Sums over all points. */
+  /** Sums over all points, and over free rigid bodies. */
   template <int dim>
   struct Totals
   {
@@ -79,6 +79,11 @@ namespace impm
   Totals<dim>
   total(const MaterialPoints<dim>  &points,
         const std::optional<double> strain_energy = {});
+
+  /** What free rigid bodies add. */
+  template <int dim>
+  void
+  add(const RigidBodies<dim> &rigid, Totals<dim> &totals);
 
   /** history.csv: a header line, then rows, each on disk at once. */
   template <int dim>
@@ -102,10 +107,12 @@ namespace impm
     void
     open(const std::string &directory, bool goes_on = false);
 
-    /** What the points do not tell of a step when they have moved, with its
-     * StepProblem::end_forces(). Collective. */
+    /** What the points do not tell of a step, that has converged at `u`, when
+     * they have moved, with its StepProblem::end_forces(). Collective. */
     void
-    take_figures(const StepProblem<dim> &problem, const Vector &forces);
+    take_figures(const StepProblem<dim> &problem,
+                 const Vector           &u,
+                 const Vector           &forces);
 
     /**
      * Adds a row, after the points have moved, on all that happened since the
@@ -169,6 +176,7 @@ namespace impm
     const OutputSpec              &output;
     const Bodies<dim>             &bodies;
     const MaterialPoints<dim>     &points;
+    const RigidBodies<dim>        &rigid;
     const BackgroundGrid<dim>     &grid;
     PointsPerCell                  density;
     const std::vector<std::string> names; ///< of columns

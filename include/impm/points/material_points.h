@@ -126,7 +126,13 @@ namespace impm
     unsigned int
     layer(const unsigned int point) const
     {
-      return layers[body(point)];
+      return layer_of_body(body(point));
+    }
+
+    unsigned int
+    layer_of_body(const unsigned int body) const
+    {
+      return layers[body];
     }
 
     const std::string &

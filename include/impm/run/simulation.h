@@ -244,7 +244,7 @@ namespace impm
     const std::unique_ptr<GridPolicy<dim>> policy;
     MaterialPoints<dim>                    points;
     RigidBodies<dim>                       rigid;
-    std::unique_ptr<SurfacePoints<dim>>    surfaces; ///< if any meet others
+    std::unique_ptr<SurfacePoints<dim>>    surfaces; ///< or null
     LoadBalance<dim>                       balance;
     double       best_imbalance = 1; ///< that could be reached the last time
     unsigned int adapted_step   = 0; ///< the last that began by it

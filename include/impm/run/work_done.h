@@ -12,23 +12,25 @@ namespace impm
    * External work is that of faces, rigid bodies and loads. The force of a
    * carrier at the start of a step is what it was at the end of the one before,
    * as a whole, since the grid may be another: exact for carriers that move as
-   * a whole; of others, the force at the end counts, but for their mean motion.
-   * Inertia of what they hold counts by its mean force. Internal work is that
-   * of the stresses along the grid's increments. What external work leaves
-   * beside it, stabilization and kinetic energy is lost where points go on to a
-   * new grid, out of balance, and to integrators that damp.
+   * a whole, and turn; of others, the force at the end counts, but for their
+   * mean motion. Inertia of what they hold counts by its mean force. Internal
+   * work is that of the stresses along the grid's increments. What external
+   * work leaves beside it, stabilization and kinetic energy is lost where
+   * points go on to a new grid, out of balance, and to integrators that damp.
    */
   template <int dim>
   class WorkDone
   {
   public:
-    /** The work (J) of a step, and the forces at its end by carrier (N). */
+    /** The work (J) of a step, and at its end, by carrier, the forces (N) and
+     * their moments about the centres of what turns (N m). */
     struct Step
     {
       double external = 0, internal = 0, stabilization = 0, contact = 0;
       /** Between the trapezoidal rule and the forces at one end (J). */
       double                              uncertain = 0;
       std::vector<dealii::Tensor<1, dim>> last_forces;
+      std::vector<RotationVector>         last_moments;
     };
 
     /** Of one that has converged at `u`, with its end_forces(). Collective. */
@@ -46,7 +48,7 @@ namespace impm
     serialize(Archive &archive, const unsigned int /*version*/)
     {
       archive &external &internal &stabilization &uncertain &contact
-        &last_forces;
+        &last_forces &last_moments;
     }
 
     double external      = 0; ///< (J)
@@ -56,8 +58,9 @@ namespace impm
     double contact       = 0; ///< stored in contact, or lost to friction (J)
 
   private:
-    /** By carrier: the forces at the end of the last step (N). */
+    // At the end of the last step, see Step.
     std::vector<dealii::Tensor<1, dim>> last_forces;
+    std::vector<RotationVector>         last_moments;
   };
 } // namespace impm
 

@@ -33,6 +33,7 @@ namespace impm
     Bodies<dim>                     bodies;
     AdaptationSpec<dim>             adaptation;
     Faces<dim>                      faces;
+    std::vector<GripSpec<dim>>      grips;
     ContactSpec                     contact;
     LoadsSpec<dim>                  loads;
     TimeSpec                        time;

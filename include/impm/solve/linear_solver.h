@@ -3,6 +3,8 @@
 
 #include <deal.II/base/timer.h>
 
+#include <deal.II/lac/full_matrix.h>
+
 #include <impm/input/sections/solver.h>
 #include <impm/solve/difference_quotient.h>
 #include <impm/solve/direct_solver.h>
@@ -64,6 +66,17 @@ namespace impm
     assemble();
 
     void
+    take_sparse_tangent();
+
+    /** Solves without the correction of the tangent. */
+    unsigned int
+    solve_sparse(Vector &x, const Vector &b);
+
+    /** Takes it (Woodbury). */
+    void
+    take_correction();
+
+    void
     set_up_hierarchy();
 
     unsigned int
@@ -90,6 +103,12 @@ namespace impm
     unsigned int place_of_matrix     = 0; ///< of the matrix that it knows
     std::unique_ptr<DirectSolver> direct; ///< once it was needed
     bool is_factorized = false;           ///< the matrix as it is
+
+    // The correction L R^T of the sparse tangent K: R, K^-1 L and the inverse
+    // of 1 + R^T K^-1 L.
+    LowRank                    correction;
+    dealii::FullMatrix<double> of_correction;
+    unsigned int correction_iterations = 0; ///< that nobody has counted yet
 
     // Compact vectors, but for those of operators that know full ones.
     Vector solution, right_side, inverse_diagonal, full_src, full_dst;

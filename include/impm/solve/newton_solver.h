@@ -103,7 +103,7 @@ namespace impm
 
     const SolverSpec &spec;
     NonlinearSystem  &system;
-    const bool        has_potential, uses_bfgs;
+    const bool        has_potential, has_guide, uses_bfgs;
     ConvergenceTest   test;
     LinearSolver      linear_solver;
     Bfgs              bfgs;

@@ -18,6 +18,12 @@ namespace impm
     std::size_t  matrix_bytes = 0; ///< of the last one, on this rank
   };
 
+  /** A matrix as sum_i left_i right_i^T, of few terms. */
+  struct LowRank
+  {
+    std::vector<Vector> left, right;
+  };
+
   /**
    * What Newton's method and the linear solvers know of a step: a residual with
    * its tangent, perhaps a potential, and constraints on the unknown. All is
@@ -65,6 +71,14 @@ namespace impm
     virtual bool
     has_potential() const = 0;
 
+    /** Whether it does so nearly, so that a line search may go by the potential
+     * as well. */
+    virtual bool
+    has_guide() const
+    {
+      return has_potential();
+    }
+
     /**
      * What the potential gains of a force (N) along a direction that is zero
      * where prescribed, hanging nodes included (J).
@@ -101,6 +115,14 @@ namespace impm
     /** Fills it, with something positive on the diagonal where constrained. */
     virtual void
     assemble(SparseMatrix &matrix) const = 0;
+
+    /** What the tangent has beyond vmult() and the matrix, zero where
+     * constrained: what ties many unknowns to each other, but by little. */
+    virtual LowRank
+    correction() const
+    {
+      return {};
+    }
 
     /** Directions that cost hardly any energy, by owned compact index. */
     virtual std::vector<std::vector<double>>

@@ -52,12 +52,12 @@ namespace impm
         state.curved   = -state.pressure * curvature;
       }
 
-    state.slip -= (state.slip * link.normal) * link.normal;
+    state.slip -= (state.slip * normals[l]) * normals[l];
     if (const double bound = bounds[l]; bound > 0)
       {
         const double c = friction_stiffness * k, slip = state.slip.norm();
         const auto   along = unit_symmetric_tensor<dim>() -
-                           symmetrize(outer_product(link.normal, link.normal));
+                           symmetrize(outer_product(normals[l], normals[l]));
         state.friction = std::min(c * slip, bound);
         if (c * slip <= bound)
           {
@@ -79,34 +79,230 @@ namespace impm
   }
 
   template <int dim>
-  Tensor<1, dim>
-  Contact<dim>::way_of(const ContactLink<dim> &link, const Vector &u) const
+  typename Contact<dim>::State
+  Contact<dim>::state_after(const unsigned int    l,
+                            const Tensor<1, dim> &increment) const
   {
-    Tensor<1, dim> way;
-    for (unsigned int k = link.begin; k < link.end; ++k)
-      for (unsigned int c = 0; c < dim; ++c)
-        way[c] += all.coefficients[k] * u.local_element(dim * all.nodes[k] + c);
-    if (link.obstacle != nullptr)
-      way -= link.obstacle->displacement;
-    return way;
+    const auto          &link   = all.links[l];
+    const Point<dim>     place  = link.place + increment;
+    const auto          &motion = motions[link.pair];
+    const Tensor<1, dim> carried =
+      link.obstacle != nullptr ? motion.increment_to(place) : Tensor<1, dim>();
+    auto state    = state_at(l, increment - carried);
+    state.place   = place;
+    state.carried = carried;
+    if (motion.turns())
+      {
+        const auto R    = motion.rotation();
+        const auto turn = [&](const SymmetricTensor<2, dim> &tangent) {
+          return symmetrize(R * Tensor<2, dim>(tangent) * transpose(R));
+        };
+        state.gradient = R * state.gradient;
+        state.tangent  = turn(state.tangent);
+        state.curved   = turn(state.curved);
+        state.slip     = R * state.slip;
+      }
+    return state;
   }
 
   template <int dim>
-  Contact<dim>::Contact(ContactLinks<dim> links)
+  Tensor<1, dim>
+  Contact<dim>::increment_of(const ContactLink<dim> &link,
+                             const Vector           &u) const
+  {
+    Tensor<1, dim> sum;
+    for (unsigned int k = link.begin; k < link.end; ++k)
+      for (unsigned int c = 0; c < dim; ++c)
+        sum[c] += all.coefficients[k] * u.local_element(dim * all.nodes[k] + c);
+    return sum;
+  }
+
+  template <int dim>
+  Contact<dim>::Contact(ContactLinks<dim>      links,
+                        FreeBodies<dim> *const free,
+                        const MPI_Comm         comm)
     : all(std::move(links))
     , states(all.links.size())
+    , free(free)
+    , communicator(comm)
   {
     for (const auto &link : all.links)
-      bounds.push_back(link.friction_bound);
+      {
+        bounds.push_back(link.friction_bound);
+        normals.push_back(link.normal);
+      }
+    motions.resize(all.obstacles.size());
+    if (free != nullptr)
+      {
+        // Nothing has moved yet.
+        for (unsigned int q = 0; q < motions.size(); ++q)
+          motions[q].centre = all.obstacles[q].motion.centre;
+        for (unsigned int l = 0; l < states.size(); ++l)
+          states[l] = state_after(l, Tensor<1, dim>());
+        free->begin(loads_on_free_bodies());
+      }
+    for (unsigned int q = 0; q < motions.size(); ++q)
+      motions[q] = all.obstacles[q].motion;
   }
 
   template <int dim>
   bool
   Contact<dim>::evaluate(const Vector &u, const bool /*with_tangent*/)
   {
+    std::vector<Tensor<1, dim>> increments;
+    for (const auto &link : all.links)
+      increments.push_back(increment_of(link, u));
+    if (free != nullptr)
+      return settle(increments);
     for (unsigned int l = 0; l < states.size(); ++l)
-      states[l] = state_at(l, way_of(all.links[l], u));
+      states[l] = state_after(l, increments[l]);
     return true;
+  }
+
+  template <int dim>
+  bool
+  Contact<dim>::settle(const std::vector<Tensor<1, dim>> &increments)
+  {
+    const unsigned int most = 100;
+    free->restart();
+    for (unsigned int i = 0; i < most; ++i)
+      {
+        for (unsigned int q = 0; q < motions.size(); ++q)
+          if (const auto &body = all.obstacles[q].free_body)
+            motions[q] = free->motion(*body);
+        for (unsigned int l = 0; l < states.size(); ++l)
+          if (i == 0 || all.obstacles[all.links[l].pair].free_body)
+            states[l] = state_after(l, increments[l]);
+        if (free->improve(loads_on_free_bodies()))
+          return true;
+      }
+    return false;
+  }
+
+  template <int dim>
+  Tensor<1, dim>
+  Contact<dim>::change_by(const unsigned int l, const unsigned int c) const
+  {
+    const auto &state   = states[l];
+    const auto  tangent = state.tangent + state.curved;
+    if (c < dim)
+      {
+        Tensor<1, dim> unit;
+        unit[c] = 1;
+        return -(tangent * unit);
+      }
+    RotationVector axis;
+    axis[c - dim]      = 1;
+    const auto &motion = motions[all.links[l].pair];
+    const auto  arm    = state.place - (motion.centre + motion.shift);
+    return cross(axis, state.gradient) - tangent * cross(axis, arm);
+  }
+
+  template <int dim>
+  std::vector<typename FreeBodies<dim>::Load>
+  Contact<dim>::loads_on_free_bodies() const
+  {
+    using Bodies                     = FreeBodies<dim>;
+    constexpr unsigned int n         = Bodies::n_components;
+    constexpr unsigned int n_numbers = n * (n + 1) + 4;
+    std::vector<double>    sums(free->size() * n_numbers);
+    for (unsigned int l = 0; l < states.size(); ++l)
+      {
+        const auto &link  = all.links[l];
+        const auto &state = states[l];
+        const auto &body  = all.obstacles[link.pair].free_body;
+        if (!body || state.tangent.norm() == 0)
+          continue;
+        const auto          &motion = motions[link.pair];
+        const Tensor<1, dim> arm = state.place - (motion.centre + motion.shift);
+        double              *sum = &sums[*body * n_numbers];
+        const auto           add = [&](const Tensor<1, dim> &force,
+                             const RotationVector &moment) {
+          for (unsigned int d = 0; d < dim; ++d)
+            *sum++ += link.area * force[d];
+          for (unsigned int d = 0; d < 3; ++d)
+            *sum++ += link.area * moment[d];
+        };
+        add(state.gradient, moment_of<dim>(arm, state.gradient));
+        for (unsigned int c = 0; c < n; ++c)
+          {
+            // The centre moves under what pushes where it is.
+            const auto change = change_by(l, c);
+            auto       moment = moment_of<dim>(arm, change);
+            if (c < dim)
+              {
+                Tensor<1, dim> unit;
+                unit[c] = 1;
+                moment -= moment_of<dim>(unit, state.gradient);
+              }
+            add(change, moment);
+          }
+        const double force = link.area * state.gradient.norm();
+        const double noise = 16 * std::numeric_limits<double>::epsilon() *
+                             link.area * link.stiffness * state.place.norm();
+        for (const double number :
+             {force, force * arm.norm(), noise, noise * arm.norm()})
+          *sum++ += number;
+      }
+    Utilities::MPI::sum(sums, communicator, sums);
+    std::vector<typename Bodies::Load> loads(free->size());
+    const double                      *sum = sums.data();
+    for (auto &load : loads)
+      {
+        for (unsigned int i = 0; i < n; ++i)
+          load.value[i] = *sum++;
+        for (unsigned int c = 0; c < n; ++c)
+          for (unsigned int i = 0; i < n; ++i)
+            load.derivative[i][c] = *sum++;
+        for (double *number :
+             {&load.force, &load.moment, &load.force_noise, &load.moment_noise})
+          *number = *sum++;
+      }
+    return loads;
+  }
+
+  template <int dim>
+  void
+  Contact<dim>::add_correction(const Vector &like, LowRank &correction) const
+  {
+    if (free == nullptr)
+      return;
+    const auto loads = loads_on_free_bodies();
+    for (unsigned int b = 0; b < loads.size(); ++b)
+      {
+        if (loads[b].derivative.norm() == 0)
+          continue; // nothing is near
+        const auto         compliance = free->compliance(b, loads[b]);
+        const unsigned int first      = correction.left.size(),
+                           n          = free->unknowns.size();
+        for (auto *vectors : {&correction.left, &correction.right})
+          for (unsigned int i = 0; i < n; ++i)
+            {
+              vectors->emplace_back();
+              vectors->back().reinit(like);
+            }
+        for (unsigned int l = 0; l < states.size(); ++l)
+          {
+            const auto &link = all.links[l];
+            if (all.obstacles[link.pair].free_body != b ||
+                states[l].tangent.norm() == 0)
+              continue;
+            std::array<Tensor<1, dim>, FreeBodies<dim>::n_components> changes;
+            for (unsigned int c = 0; c < changes.size(); ++c)
+              changes[c] = change_by(l, c);
+            for (unsigned int i = 0; i < n; ++i)
+              {
+                // What moves the body changes the load as if the point
+                // went the other way.
+                const auto     right = -changes[free->unknowns[i]];
+                Tensor<1, dim> left;
+                for (const unsigned int j : free->unknowns)
+                  left += compliance[j][free->unknowns[i]] * changes[j];
+                add(l, left, correction.left[first + i]);
+                add(l, right, correction.right[first + i]);
+              }
+          }
+      }
   }
 
   template <int dim>
@@ -145,6 +341,8 @@ namespace impm
     double sum = 0;
     for (unsigned int l = 0; l < states.size(); ++l)
       sum += all.links[l].area * states[l].energy;
+    if (free != nullptr && Utilities::MPI::this_mpi_process(communicator) == 0)
+      sum += free->potential();
     return sum;
   }
 
@@ -178,13 +376,11 @@ namespace impm
   {
     for (unsigned int l = 0; l < states.size(); ++l)
       {
-        const auto    &link = all.links[l];
-        Tensor<1, dim> way;
-        for (unsigned int k = link.begin; k < link.end; ++k)
-          for (unsigned int c = 0; c < dim; ++c)
-            way[c] += all.coefficients[k] *
-                      direction.local_element(dim * all.nodes[k] + c);
-        add(l, (states[l].tangent + states[l].curved) * way, image);
+        const auto &link = all.links[l];
+        add(l,
+            (states[l].tangent + states[l].curved) *
+              increment_of(link, direction),
+            image);
       }
   }
 
@@ -237,9 +433,30 @@ namespace impm
         sums[0] += link.area * std::abs(bound - bounds[l]);
         sums[1] += link.area * bound;
         bounds[l] = bound;
+        if (bound == 0 || link.obstacle == nullptr ||
+            !motions[link.pair].turns())
+          continue;
+        const auto &state = states[l];
+        const auto  normal =
+          link.obstacle->proximity(state.place - state.carried).normal;
+        // Where it is another side of the body, it would go to and fro.
+        if (normal * normals[l] < 0.5)
+          continue;
+        sums[0] += link.area * bound * (normal - normals[l]).norm();
+        normals[l] = normal;
       }
     Utilities::MPI::sum(sums, communicator, sums);
     return sums[0] > tolerance * sums[1];
+  }
+
+  template <int dim>
+  double
+  Contact<dim>::total_force() const
+  {
+    double sum = 0;
+    for (unsigned int l = 0; l < states.size(); ++l)
+      sum += all.links[l].area * states[l].gradient.norm();
+    return Utilities::MPI::sum(sum, communicator);
   }
 
   template <int dim>
@@ -262,6 +479,19 @@ namespace impm
       if (all.links[l].pair == pair)
         force += all.links[l].area * states[l].gradient;
     return force;
+  }
+
+  template <int dim>
+  RotationVector
+  Contact<dim>::moment_on_partner(const unsigned int pair,
+                                  const Point<dim>  &about) const
+  {
+    RotationVector moment;
+    for (unsigned int l = 0; l < states.size(); ++l)
+      if (all.links[l].pair == pair)
+        moment += all.links[l].area *
+                  moment_of<dim>(states[l].place - about, states[l].gradient);
+    return moment;
   }
 
   template <int dim>
@@ -295,10 +525,12 @@ namespace impm
   {
     double work = 0;
     for (unsigned int l = 0; l < states.size(); ++l)
-      if (const auto &link = all.links[l]; link.obstacle != nullptr)
+      if (const auto &link = all.links[l];
+          link.obstacle != nullptr && !link.obstacle->free_body)
         work -= 0.5 * link.area *
-                (states[l].gradient + state_at(l, Tensor<1, dim>()).gradient) *
-                link.obstacle->displacement;
+                (states[l].gradient * states[l].carried +
+                 state_at(l, Tensor<1, dim>()).gradient *
+                   motions[link.pair].increment(link.place));
     return work;
   }
 
@@ -315,8 +547,7 @@ namespace impm
 
   template <int dim>
   void
-  Contact<dim>::advance(const Vector       &increment,
-                        SurfacePoints<dim> &points) const
+  Contact<dim>::remember_meetings(SurfacePoints<dim> &points) const
   {
     // A point that meets several goes on with the one that presses most.
     std::vector<typename SurfacePoints<dim>::Meeting> meetings(points.size());
@@ -339,20 +570,8 @@ namespace impm
         if (const double slip = state.slip.norm(); slip > most)
           meeting.slip *= most / slip;
       }
-    std::vector<Tensor<1, dim>> ways;
-    all.prints.interpolate(increment, ways);
-    const auto   deformations = all.prints.deformations(increment);
-    unsigned int s            = 0;
-    for (auto &particle : points.sorted.particles)
-      {
-        auto edges = points.edges(s);
-        for (auto &edge : edges)
-          edge = deformations[s] * edge;
-        points.set_edges(s, edges);
-        points.set_meeting(s, meetings[s]);
-        particle.set_location(particle.get_location() + ways[s]);
-        ++s;
-      }
+    for (unsigned int s = 0; s < points.size(); ++s)
+      points.set_meeting(s, meetings[s]);
   }
 
   template class Contact<2>;

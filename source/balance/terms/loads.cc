@@ -5,6 +5,7 @@
 
 #include <impm/balance/terms/loads.h>
 #include <impm/base/exceptions.h>
+#include <impm/contact/surface_points.h>
 #include <impm/footprints/transfer.h>
 #include <impm/input/expressions.h>
 
@@ -17,13 +18,6 @@ namespace impm
 
   namespace
   {
-    template <typename Density>
-    bool
-    is_uniform(const Density &density)
-    {
-      return !names_any_of(density, "x|y|z|rand|rand_seed");
-    }
-
     template <int dim>
     void
     subtract_forces_on_points(const LoadsSpec<dim>      &spec,
@@ -66,6 +60,37 @@ namespace impm
                    [&](const unsigned int p) {
                      return points.fields(p)[area];
                    });
+        }
+      footprints.spread(forces, load);
+    }
+
+    template <int dim>
+    void
+    subtract_forces_on_surfaces(const std::vector<SurfaceLoadSpec<dim>> &loads,
+                                const SurfacePoints<dim> &surfaces,
+                                const Footprints<dim>    &footprints,
+                                const double              instant,
+                                Vector                   &load)
+    {
+      std::vector<Tensor<1, dim>> forces(surfaces.size());
+      dealii::Vector<double>      value(dim);
+      for (unsigned int l = 0; l < loads.size(); ++l)
+        {
+          if (loads[l].kind != SurfaceLoadKind::dead)
+            continue;
+          auto &traction = *loads[l].value;
+          traction.set_time(instant);
+          unsigned int next = 0;
+          for (const auto &particle : surfaces.sorted.particles)
+            if (const unsigned int s = next++; surfaces.carries(s, l))
+              {
+                traction.vector_value(loads[l].is_initial ?
+                                        surfaces.initial_position(s) :
+                                        surfaces.place(particle),
+                                      value);
+                for (unsigned int c = 0; c < dim; ++c)
+                  forces[s][c] -= surfaces.initial_area(s) * value[c];
+              }
         }
       footprints.spread(forces, load);
     }
@@ -126,6 +151,12 @@ namespace impm
                           [&](const auto &traction) {
                             return changes(traction.value);
                           }) &&
+             std::none_of(scene.loads.on_surfaces.begin(),
+                          scene.loads.on_surfaces.end(),
+                          [&](const auto &load) {
+                            return load.kind == SurfaceLoadKind::dead &&
+                                   changes(load.value);
+                          }) &&
              std::none_of(scene.faces.begin(),
                           scene.faces.end(),
                           [&](const auto &face) {
@@ -142,6 +173,16 @@ namespace impm
       const auto &loads = scene.loads;
       return (loads.body_force && !is_uniform(*loads.body_force)) ||
              !loads.tractions.empty();
+    }
+
+    template <int dim>
+    bool
+    acts_on_surfaces(const Scene<dim> &scene)
+    {
+      const auto &loads = scene.loads.on_surfaces;
+      return std::any_of(loads.begin(), loads.end(), [](const auto &load) {
+        return load.kind == SurfaceLoadKind::dead;
+      });
     }
 
     template <int dim>
@@ -181,8 +222,8 @@ namespace impm
   bool
   Loads<dim>::exist_in(const Scene<dim> &scene)
   {
-    return acts_on_points(scene) || acts_on_nodes(scene) ||
-           acts_on_faces(scene);
+    return acts_on_points(scene) || acts_on_surfaces(scene) ||
+           acts_on_nodes(scene) || acts_on_faces(scene);
   }
 
   template <int dim>
@@ -199,6 +240,8 @@ namespace impm
                     const Footprints<dim>     &footprints,
                     const PopulatedCells<dim> &populated,
                     const Discretization<dim> &discretization,
+                    const SurfacePoints<dim>  *surfaces,
+                    const Footprints<dim>     *surface_prints,
                     const Vector              &mass,
                     const double               from,
                     const double               to)
@@ -211,6 +254,9 @@ namespace impm
       if (acts_on_points(scene))
         subtract_forces_on_points(
           scene.loads, points, footprints, instant, load);
+      if (acts_on_surfaces(scene))
+        subtract_forces_on_surfaces(
+          scene.loads.on_surfaces, *surfaces, *surface_prints, instant, load);
       if (acts_on_faces(scene))
         subtract_forces_on_faces(scene, grid, populated, instant, load);
       load.compress(VectorOperation::add);

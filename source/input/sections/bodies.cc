@@ -1,5 +1,6 @@
 #include <impm/input/sections/bodies.h>
 #include <impm/input/sections/boundary_conditions.h>
+#include <impm/input/sections/geometry.h>
 #include <impm/input/sections/time.h>
 
 #include <boost/range/adaptor/map.hpp>
@@ -214,6 +215,161 @@ namespace impm
                        "surface");
     }
 
+    /** A turn that is prescribed beside the displacement. */
+    template <int dim>
+    void
+    add_rotation(const Section       &section,
+                 BodySpec<dim>       &body,
+                 const GridSpec<dim> &grid)
+    {
+      section.add("Rotation",
+                  body.rotation,
+                  {1, in_time},
+                  "Turn since the start (rad), an expression in t: in the "
+                  "plane from x to y, in space about an axis; empty: none.");
+      if (section.get("Rotation").empty())
+        return;
+      if (is_axisymmetric(section.chosen))
+        section.refuse("Rotation",
+                       "allowed in axisymmetry, where nothing turns in the "
+                       "half plane, is none");
+      if (grid.is_lagrangian())
+        section.refuse("Rotation",
+                       "allowed on a Lagrangian grid, whose nodes stick to "
+                       "boxes, is none");
+      if (body.slip_normal < dim)
+        section.refuse("Rotation",
+                       "allowed with 'Contact = slip', which holds nodes in a "
+                       "direction of the grid, is none");
+      const auto centre =
+        section.numbers("Centre",
+                        dim,
+                        "About which it turns, at the start (m). It moves with "
+                        "the displacement.");
+      std::copy(centre.begin(), centre.end(), body.centre.begin_raw());
+      body.axis = dealii::Tensor<1, 3>({0, 0, 1});
+      if (dim == 2)
+        return;
+      const auto axis = section.numbers("Axis",
+                                        3,
+                                        "Direction about which it turns, "
+                                        "right-handed, of any length.",
+                                        "0, 0, 1");
+      std::copy(axis.begin(), axis.end(), body.axis.begin_raw());
+      if (body.axis.norm() == 0)
+        section.refuse("Axis", "allowed is a vector that is not zero");
+      else
+        body.axis /= body.axis.norm();
+    }
+
+    /** Mass, centre and inertia as they are given, of a body whose density is
+     * not. */
+    template <int dim>
+    void
+    add_inertia(const Section &section, RigidInertia<dim> &inertia)
+    {
+      const bool is_axisymmetric = impm::is_axisymmetric(section.chosen);
+      std::optional<double> mass;
+      section.add("Mass",
+                  mass,
+                  "(kg; in the plane for each metre of thickness).");
+      section.require("Mass", "without 'Density' is a number greater than 0");
+      if (mass && !(*mass > 0))
+        section.refuse("Mass", "allowed is a number greater than 0");
+      inertia.mass      = mass.value_or(0);
+      const auto centre = section.numbers("Centre", dim, "Of mass (m).");
+      std::copy(centre.begin(), centre.end(), inertia.centre.begin_raw());
+      if (is_axisymmetric)
+        return;
+      const auto values = section.numbers(
+        "Inertia",
+        dim == 2 ? 1 : 6,
+        "About the centre (kg m^2): in the plane one number, in space those of "
+        "the tensor for xx, yy, zz, xy, xz, yz.");
+      if (dim == 2)
+        inertia.tensor[2][2] = values[0];
+      else
+        {
+          inertia.tensor[0][1] = inertia.tensor[1][0] = values[3];
+          inertia.tensor[0][2] = inertia.tensor[2][0] = values[4];
+          inertia.tensor[1][2] = inertia.tensor[2][1] = values[5];
+          for (unsigned int d = 0; d < 3; ++d)
+            inertia.tensor[d][d] = values[d];
+        }
+      const auto &J = inertia.tensor;
+      if (!(J[2][2] > 0 &&
+            (dim == 2 ||
+             (J[0][0] > 0 && J[0][0] * J[1][1] > J[0][1] * J[0][1] &&
+              determinant(J) > 0))))
+        section.refuse("Inertia",
+                       dim == 2 ? "allowed is a number greater than 0" :
+                                  "allowed is a tensor that is positive");
+    }
+
+    /** A rigid body that forces move. */
+    template <int dim>
+    void
+    add_free_motion(const Section &section, BodySpec<dim> &body)
+    {
+      const bool is_axisymmetric = impm::is_axisymmetric(section.chosen);
+      if (!body.meets_surfaces)
+        section.refuse("Motion",
+                       "allowed without 'Contact = surface' is "
+                       "prescribed");
+      if (is_quasi_static(section.chosen))
+        section.refuse("Motion",
+                       "allowed in quasi-static runs, which have no inertia, "
+                       "is prescribed");
+      std::optional<double> density;
+      section.add("Density",
+                  density,
+                  "(kg/m^3) from which its shape gives mass, centre and "
+                  "inertia; empty: these are given.");
+      if (section.get("Density").empty())
+        add_inertia(section, body.inertia);
+      else if (section.is_read)
+        {
+          for (const std::string entry : {"Mass", "Centre", "Inertia"})
+            if (!section.get(entry).empty())
+              section.refuse(entry,
+                             "allowed with 'Density', which gives it, is none");
+          if (!(*density > 0))
+            section.refuse("Density", "allowed is a number greater than 0");
+          if (!body.shape->bounding_box)
+            section.refuse("Density",
+                           "allowed for a shape that does not tell how far it "
+                           "reaches is none, with 'Mass', 'Centre' and "
+                           "'Inertia'");
+          body.inertia =
+            inertia_of_shape(*body.shape, *density, is_axisymmetric);
+          if (!(body.inertia.mass > 0))
+            section.refuse("Density", "while the shape has no volume");
+        }
+      body.centre         = body.inertia.centre;
+      const auto velocity = section.numbers("Velocity",
+                                            dim,
+                                            "Of the centre at the start (m/s).",
+                                            dim == 2 ? "0, 0" : "0, 0, 0");
+      std::copy(velocity.begin(),
+                velocity.end(),
+                body.free_velocity.begin_raw());
+      if (is_axisymmetric)
+        {
+          if (velocity[0] != 0)
+            section.refuse("Velocity",
+                           "allowed in axisymmetry is one along the axis");
+          return;
+        }
+      const auto spin =
+        section.numbers("Angular velocity",
+                        dim == 2 ? 1 : 3,
+                        "At the start (rad/s): in the plane from x to y.",
+                        dim == 2 ? "0" : "0, 0, 0");
+      std::copy(spin.begin(),
+                spin.end(),
+                body.free_spin.begin_raw() + (dim == 2 ? 2 : 0));
+    }
+
     template <int dim>
     void
     add_body(const Section          &section,
@@ -244,11 +400,23 @@ namespace impm
                         "each direction, between semicolons; empty: at rest.");
           return;
         }
+      section.add("Motion",
+                  body.is_free,
+                  {{"prescribed", false}, {"free", true}},
+                  "Of a rigid body with 'Contact = surface': free, forces of "
+                  "contact and the body force move it; it passes through "
+                  "rigid bodies and faces.");
+      if (body.is_free)
+        {
+          add_free_motion(section, body);
+          return;
+        }
       section.add("Displacement",
                   body.displacement,
                   {dim, in_time},
                   "Since the start (m): expressions in t, one for each "
                   "direction, between semicolons.");
+      add_rotation(section, body, grid);
     }
   } // namespace
 

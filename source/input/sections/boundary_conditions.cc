@@ -27,30 +27,43 @@ namespace impm
         "Type",
         "free",
         Patterns::Selection("free|fixed|slip|displacement|velocity|"
-                            "normal displacement|normal velocity|traction"),
+                            "normal displacement|normal velocity|traction|"
+                            "pressure"),
         "Of the face of the domain. Slip: no motion through it. "
-        "Traction: only on a Lagrangian grid, which fits the body.");
-      const bool traction = type == "traction";
-      if (traction && !lagrangian)
+        "Traction, pressure: only on a Lagrangian grid, which fits the body; "
+        "elsewhere bodies have them on their surfaces (section Loads).");
+      const bool pressure = type == "pressure";
+      const bool loaded   = type == "traction" || pressure;
+      face.is_pressed     = pressure;
+      if (loaded && !lagrangian)
         section.refuse("Type",
                        "which is for a Lagrangian grid: only there is the face "
                        "of the domain one of the body");
       const bool only_normal = type == "slip" || starts_with(type, "normal ");
-      if (type != "free" && !traction)
+      if (type != "free" && !loaded)
         for (unsigned int d = 0; d < dim; ++d)
           face.constrained[d] = !only_normal || d == normal;
       if (type == "free" || type == "fixed" || type == "slip")
         return;
-      section.add("Value",
-                  traction ? face.traction : face.value,
-                  {only_normal ? 1U : dim, in_time},
-                  "Displacement since the start (m), velocity (m/s) or force "
-                  "per initial area (Pa): expressions in x, y, z, t, one for "
-                  "each direction, between semicolons; a normal one has one, "
-                  "along the axis.");
-      if (traction)
-        return;
+      const std::string value =
+        "Displacement since the start (m), velocity (m/s) or force per initial "
+        "area (Pa): expressions in x, y, z, t, one for each direction, between "
+        "semicolons; 'free' instead of one leaves that component of a motion "
+        "free. A normal one has one, along the axis. A pressure (Pa), which "
+        "follows the face and points into the body, has one, too, in places as "
+        "they are.";
+      if (loaded || only_normal)
+        section.add("Value",
+                    pressure ? face.pressure :
+                    loaded   ? face.traction :
+                               face.value,
+                    {only_normal || pressure ? 1U : dim, in_time},
+                    value);
+      else
+        section.add("Value", face.value, face.constrained, value);
       section.require("Value", "are expressions");
+      if (loaded)
+        return;
       face.is_velocity = ends_with(type, "velocity");
       if (!lagrangian)
         section.add("Moves the grid",
@@ -58,6 +71,56 @@ namespace impm
                     false,
                     "The grid is stretched with this face, which moves as a "
                     "plane.");
+      if (face.moves_grid && !face.constrained[normal])
+        section.refuse("Moves the grid",
+                       "which takes a face whose normal component is not free");
+    }
+
+    template <int dim>
+    void
+    add_grip(const Section     &section,
+             GripSpec<dim>     &grip,
+             const Bodies<dim> &bodies)
+    {
+      grip.name = section.name;
+      section.add("Body", grip.body_name, "Name of a deformable body.");
+      section.require_name("Body",
+                           grip.body_name,
+                           names_of_bodies(bodies, false));
+      grip.body =
+        std::find_if(bodies.begin(),
+                     bodies.end(),
+                     [&](const auto &b) { return b.name == grip.body_name; }) -
+        bodies.begin();
+      section.add(
+        "Where",
+        grip.where,
+        {1, steady},
+        "Expression in x, y, z: the grip holds the nodes of all cells "
+        "with points of the body whose places at the start make it "
+        "positive.");
+      section.require("Where", "is an expression");
+      section.add("Type",
+                  grip.is_velocity,
+                  {{"displacement", false}, {"velocity", true}},
+                  "What is prescribed.");
+      grip.constrained.fill(true);
+      section.add(
+        "Value",
+        grip.value,
+        grip.constrained,
+        "Displacement since the start (m), in x, y, z at the start and "
+        "t, or velocity (m/s), in x, y, z as they are and t: "
+        "expressions, one for each direction, between semicolons; "
+        "'free' instead of one leaves that component free.");
+      section.require("Value", "are expressions");
+      grip.varies = grip.value && !is_uniform(*grip.value);
+      if (grip.varies && !grip.is_velocity &&
+          std::count(grip.constrained.begin(), grip.constrained.end(), false))
+        section.refuse("Value",
+                       "allowed for a displacement, where a component is free, "
+                       "are expressions in t: where points have been at the "
+                       "start is not known");
     }
 
     /**
@@ -173,19 +236,21 @@ namespace impm
 
   template <int dim>
   void
-  add_boundary_conditions(const Section            &top,
-                          Faces<dim>               &faces,
-                          const GridSpec<dim>      &grid,
-                          std::vector<std::string> &warnings)
+  add_boundary_conditions(const Section              &top,
+                          Faces<dim>                 &faces,
+                          std::vector<GripSpec<dim>> &grips,
+                          const Bodies<dim>          &bodies,
+                          const GridSpec<dim>        &grid,
+                          std::vector<std::string>   &warnings)
   {
     const auto section    = top.subsection("Boundary conditions");
     bool       moves_grid = false;
     for (unsigned int f = 0; f < 2 * dim; ++f)
       {
-        const auto  subsection = section.subsection(face_names()[f]);
-        const auto &held       = faces[f].constrained;
+        const auto subsection = section.subsection(face_names()[f]);
+        const auto type       = section.subsection(face_names()[f]).get("Type");
         add_face(subsection, faces[f], f / 2, grid.is_lagrangian());
-        if (grid.map && std::count(held.begin(), held.end(), true) == 1)
+        if (grid.map && (type == "slip" || starts_with(type, "normal ")))
           check_mapped_face(subsection, grid, f);
         if (faces[f].moves_grid && moves_grid)
           subsection.fail("Moves the grid",
@@ -200,16 +265,37 @@ namespace impm
             "of the cells at it as long as material is there, and nothing "
             "once the material has left them; see 'Moves the grid'");
       }
+    for (const auto &name : section.names(
+           "Grips",
+           "Names of parts of bodies whose motion is prescribed, each with a "
+           "subsection."))
+      {
+        if (std::count(face_names().begin(), face_names().end(), name) > 0)
+          {
+            section.fail("Grips",
+                         "found '" + name + "', which is taken by a face");
+            continue; // when declaring, which the face does
+          }
+        for (const auto &body : bodies)
+          if (body.name == name)
+            section.fail("Grips",
+                         "found '" + name + "', which is taken by a body");
+        add_grip(section.subsection(name), grips.emplace_back(), bodies);
+      }
   }
 
   template void
   add_boundary_conditions(const Section &,
                           Faces<2> &,
+                          std::vector<GripSpec<2>> &,
+                          const Bodies<2> &,
                           const GridSpec<2> &,
                           std::vector<std::string> &);
   template void
   add_boundary_conditions(const Section &,
                           Faces<3> &,
+                          std::vector<GripSpec<3>> &,
+                          const Bodies<3> &,
                           const GridSpec<3> &,
                           std::vector<std::string> &);
 } // namespace impm

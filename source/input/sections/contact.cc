@@ -228,6 +228,10 @@ namespace impm
               section.refuse("Pairs",
                              "allowed is at least one with '" + bodies[r].name +
                                "', whose Contact is its surface");
+            if (bodies[r].is_free && names_of_bodies(bodies, true).size() > 1)
+              warnings.push_back("free rigid body '" + bodies[r].name +
+                                 "' passes through other rigid bodies: only "
+                                 "deformable ones meet it");
             if (!others.empty())
               warnings.push_back("rigid body '" + bodies[r].name +
                                  "' passes through " + join(others, ", ") +

@@ -21,6 +21,12 @@ namespace impm
     return kinds.read(chosen, "Geometry") == GeometryKind::three_d;
   }
 
+  bool
+  is_axisymmetric(const ParameterFile::Chosen &chosen)
+  {
+    return kinds.read(chosen, "Geometry") == GeometryKind::axisymmetric;
+  }
+
   template <int dim>
   void
   add_geometry(const Section     &top,

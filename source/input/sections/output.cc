@@ -1,3 +1,4 @@
+#include <impm/input/sections/geometry.h>
 #include <impm/input/sections/output.h>
 #include <impm/points/point_fields.h>
 
@@ -119,6 +120,52 @@ namespace impm
         if (face.moves_grid)
           movable.insert(movable.begin(), face.name);
       section.require_name("Of", probe.of, movable);
+      using Quantity = ProbeSpec::Quantity;
+      section.add("Quantity",
+                  probe.quantity,
+                  {{"displacement", Quantity::displacement},
+                   {"velocity", Quantity::velocity},
+                   {"rotation", Quantity::rotation},
+                   {"angular velocity", Quantity::angular_velocity}},
+                  "Displacement: of a face, or of the centre of a rigid body "
+                  "(m). Rotation: of a rigid body (rad; in space of a free "
+                  "one, the vector, up to half a turn). Velocity (m/s), "
+                  "angular velocity (rad/s): of a free rigid body.");
+      const auto body =
+        std::find_if(bodies.begin(), bodies.end(), [&](const auto &one) {
+          return one.name == probe.of;
+        });
+      if (probe.quantity != Quantity::displacement && body == bodies.end())
+        section.refuse("Quantity", "allowed for a face is displacement");
+      if ((probe.quantity == Quantity::velocity ||
+           probe.quantity == Quantity::angular_velocity) &&
+          body != bodies.end() && !body->is_free)
+        section.refuse("Quantity",
+                       "allowed for a body whose motion is prescribed are "
+                       "displacement, rotation");
+    }
+
+    /** Of a vector. */
+    template <int dim>
+    void
+    add_component(const Section &section, ProbeSpec &probe)
+    {
+      const bool is_rotation =
+        probe.quantity == ProbeSpec::Quantity::rotation ||
+        probe.quantity == ProbeSpec::Quantity::angular_velocity;
+      if (dim == 2 && is_rotation)
+        {
+          probe.component = 2; // about z
+          return;
+        }
+      section.add("Component",
+                  probe.component,
+                  {"0", 0, 8},
+                  "Of the vector or, by rows, of the 3 x 3 tensor.");
+      if ((probe.kind == Kind::motion || probe.kind == Kind::extent) &&
+          probe.component >= dim)
+        section.refuse("Component",
+                       "allowed is less than " + std::to_string(dim));
     }
 
     template <int dim>
@@ -161,25 +208,22 @@ namespace impm
                       "displacement");
           check_field(section, "Field", probe.field, dim);
         }
-      section.add("Component",
-                  probe.component,
-                  {"0", 0, 8},
-                  "Of the vector or, by rows, of the 3 x 3 tensor.");
-      if (!has_field && probe.component >= dim)
-        section.refuse("Component",
-                       "allowed is less than " + std::to_string(dim));
+      add_component<dim>(section, probe);
       section.add("Factor", probe.factor, {"1"}, "Multiplies the figure.");
     }
 
     template <int dim>
     void
-    add_reaction(const Section     &section,
-                 ReactionSpec      &reaction,
-                 const Faces<dim>  &faces,
-                 const Bodies<dim> &bodies)
+    add_reaction(const Section                    &section,
+                 ReactionSpec                     &reaction,
+                 const Faces<dim>                 &faces,
+                 const std::vector<GripSpec<dim>> &grips,
+                 const Bodies<dim>                &bodies)
     {
       reaction.name = section.name;
-      section.add("On", reaction.on, "A face of the domain or a rigid body.");
+      section.add("On",
+                  reaction.on,
+                  "A face of the domain, a rigid body or a grip.");
       std::vector<std::string> carriers;
       for (const auto &face : faces)
         if (std::count(face.constrained.begin(),
@@ -189,12 +233,38 @@ namespace impm
           carriers.push_back(face.name);
       for (const auto &body : names_of_bodies(bodies, true))
         carriers.push_back(body);
+      for (const auto &grip : grips)
+        carriers.push_back(grip.name);
       section.require_name("On", reaction.on, carriers);
+      section.add("Kind",
+                  reaction.is_moment,
+                  {{"force", false}, {"moment", true}},
+                  "Force: of the material on it. Moment: of these forces, at "
+                  "their places at the end of a step, about a point; in the "
+                  "plane about z, for each metre of thickness.");
+      if (reaction.is_moment)
+        {
+          if (is_axisymmetric(section.chosen))
+            section.refuse("Kind",
+                           "allowed in axisymmetry, where moments are none, is "
+                           "force");
+          reaction.about =
+            section.numbers("About", dim, "The point (m), which is at rest.");
+          if (dim == 2)
+            {
+              reaction.direction = {0, 0, 1};
+              section.add("Factor",
+                          reaction.factor,
+                          {"1"},
+                          "Multiplies the figure.");
+              return;
+            }
+        }
       reaction.direction =
         section.numbers("Direction",
                         dim,
-                        "The force of the material on it is projected on this "
-                        "vector.");
+                        "The force of the material on it, or the moment, is "
+                        "projected on this vector.");
       if (std::all_of(reaction.direction.begin(),
                       reaction.direction.end(),
                       [](const double value) { return value == 0; }))
@@ -205,10 +275,11 @@ namespace impm
 
   template <int dim>
   void
-  add_output(const Section     &top,
-             OutputSpec        &output,
-             const Faces<dim>  &faces,
-             const Bodies<dim> &bodies)
+  add_output(const Section                    &top,
+             OutputSpec                       &output,
+             const Faces<dim>                 &faces,
+             const std::vector<GripSpec<dim>> &grips,
+             const Bodies<dim>                &bodies)
   {
     const auto section = top.subsection("Output");
     section.add("Directory",
@@ -238,6 +309,7 @@ namespace impm
       add_reaction(section.subsection(name),
                    output.reactions.emplace_back(),
                    faces,
+                   grips,
                    bodies);
   }
 
@@ -258,10 +330,12 @@ namespace impm
   add_output(const Section &,
              OutputSpec &,
              const Faces<2> &,
+             const std::vector<GripSpec<2>> &,
              const Bodies<2> &);
   template void
   add_output(const Section &,
              OutputSpec &,
              const Faces<3> &,
+             const std::vector<GripSpec<3>> &,
              const Bodies<3> &);
 } // namespace impm

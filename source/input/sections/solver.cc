@@ -159,9 +159,12 @@ namespace impm
     check_symmetry(const Section     &section,
                    SolverSpec        &solver,
                    const TimeSpec    &time,
-                   const Bodies<dim> &bodies)
+                   const Bodies<dim> &bodies,
+                   const bool         has_following_loads)
     {
       std::string what;
+      if (has_following_loads)
+        what = "a pressure or torque, which follows a surface,";
       for (const auto &body : bodies)
         if (body.material && !body.material->has_symmetric_tangent())
           what = "the law of body '" + body.name + "'";
@@ -187,7 +190,8 @@ namespace impm
   add_solver(const Section     &top,
              SolverSpec        &solver,
              const TimeSpec    &time,
-             const Bodies<dim> &bodies)
+             const Bodies<dim> &bodies,
+             const bool         has_following_loads)
   {
     const auto section = top.subsection("Solver");
     if (time.is_explicit())
@@ -202,7 +206,7 @@ namespace impm
                                     "'linear' law: allowed are the others");
     add_newton(section, solver);
     add_linear_solver(section, solver);
-    check_symmetry(section, solver, time, bodies);
+    check_symmetry(section, solver, time, bodies, has_following_loads);
     if (!time.has_inertia() && solver.has_symmetric_matrix &&
         solver.linear_solver != LinearSolverKind::gmres)
       section.add(
@@ -221,13 +225,9 @@ namespace impm
   }
 
   template void
-  add_solver(const Section &,
-             SolverSpec &,
-             const TimeSpec &,
-             const Bodies<2> &);
+  add_solver(
+    const Section &, SolverSpec &, const TimeSpec &, const Bodies<2> &, bool);
   template void
-  add_solver(const Section &,
-             SolverSpec &,
-             const TimeSpec &,
-             const Bodies<3> &);
+  add_solver(
+    const Section &, SolverSpec &, const TimeSpec &, const Bodies<3> &, bool);
 } // namespace impm

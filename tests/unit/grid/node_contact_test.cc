@@ -116,7 +116,7 @@ check_folding(const std::string &kind,
       const double start = model.time;
       model.commit(u);
       model.rigid.move(start, model.time);
-      const auto   shift = model.rigid.bodies[0].displacement(0, model.time);
+      const auto   shift = model.rigid.bodies[0].motion(0, model.time).shift;
       const double face  = 1 + shift[dim - 1];
       for (const auto &place : model.grid.discretization()->node_positions)
         EXPECT_LT(place[dim - 1], face + 2 * tolerance);

@@ -192,6 +192,81 @@ TEST(ContactInput, AFaceThatMovesWithoutTheGrid)
                {"'top'", "move the grid"});
 }
 
+TEST(ContactInput, WhatDoesNotTurn)
+{
+  const std::string entry    = "Bodies/tool/Rotation";
+  const Overrides   rotation = {"Bodies/tool/Rotation=t",
+                                "Bodies/tool/Centre=0, 0"};
+  expect_blame(rotation + Overrides{"Geometry/Kind=axisymmetric"},
+               entry,
+               {"axisymmetry"});
+  expect_blame(rotation + Overrides{"Grid/Method=Lagrangian"},
+               entry,
+               {"Lagrangian"});
+  expect_blame(rotation + Overrides{"Bodies/tool/Contact=slip y"},
+               entry,
+               {"slip"});
+  expect_blame({"Bodies/tool/Rotation=t"}, "Bodies/tool/Centre", {"2 numbers"});
+  const Overrides moment = {"Output/Reactions=m",
+                            "Output/m/On=tool",
+                            "Output/m/Kind=moment"};
+  expect_blame(moment +
+                 Overrides{"Output/m/About=1, 2", "Geometry/Kind=axisymmetric"},
+               "Output/m/Kind",
+               {"axisymmetry"});
+  expect_blame(moment, "Output/m/About", {"2 numbers"});
+  const auto scene =
+    scene_of(rotation + moment + Overrides{"Output/m/About=1, 2"});
+  EXPECT_TRUE(scene.output.reactions[0].is_moment);
+  EXPECT_EQ(scene.bodies[2].axis[2], 1);
+}
+
+TEST(ContactInput, WhatIsNotFree)
+{
+  const std::string entry = "Bodies/tool/Motion";
+  const Overrides   free  = {"Bodies/tool/Motion=free"},
+                  dense   = {"Bodies/tool/Density=1"};
+  expect_blame(free + dense + with_inertia, entry, {"Contact = surface"});
+  expect_blame(free + dense + by_surface + pair("block, tool"),
+               entry,
+               {"quasi-static"});
+  const Overrides meets =
+    by_surface + pair("block, tool") + with_inertia + free;
+  expect_blame(meets, "Bodies/tool/Mass", {"without 'Density'"});
+  expect_blame(meets + Overrides{"Bodies/tool/Mass=2"},
+               "Bodies/tool/Centre",
+               {"2 numbers"});
+  expect_blame(meets + dense + Overrides{"Bodies/tool/Mass=2"},
+               "Bodies/tool/Mass",
+               {"'Density'"});
+  const Overrides given = {"Bodies/tool/Centre=0.5, 0.125",
+                           "Bodies/tool/Mass=2"};
+  expect_blame(meets + given, "Bodies/tool/Inertia", {"1 numbers"});
+  expect_blame(meets + given + Overrides{"Bodies/tool/Inertia=0"},
+               "Bodies/tool/Inertia",
+               {"greater than 0"});
+  expect_blame(meets + Overrides{"Bodies/tool/Density=0"},
+               "Bodies/tool/Density",
+               {"greater than 0"});
+  expect_blame(meets + dense +
+                 Overrides{"Geometry/Shapes=box, other, ground, half",
+                           "Geometry/half/Kind=function",
+                           "Geometry/half/Inside where negative=y - 0.25",
+                           "Bodies/tool/Shape=half"},
+               "Bodies/tool/Density",
+               {"'Mass'"});
+  expect_blame(meets + dense +
+                 Overrides{"Geometry/Kind=axisymmetric",
+                           "Bodies/tool/Velocity=1, 0"},
+               "Bodies/tool/Velocity",
+               {"along the axis"});
+  const auto scene = scene_of(meets + dense);
+  EXPECT_NEAR(scene.bodies[2].inertia.mass, 0.25, 1e-12);
+  EXPECT_NEAR(scene.bodies[2].inertia.tensor[2][2],
+              0.25 * (1 + 0.0625) / 12,
+              1e-12);
+}
+
 TEST(ContactInput, OrderOfNames)
 {
   for (const std::string members : {"block, tool", "tool, block"})

@@ -117,6 +117,24 @@ TEST(ContactRuns, ABlockSlidesWithoutFriction)
 }
 
 
+// Springs, which hold it until it touches, take none of the load.
+TEST(ContactRunsMpi, WhatContactAloneHolds)
+{
+  const auto columns = run_scene<2>("plane strain",
+                                    incline<2>("", "1e6") +
+                                      Overrides{"Time/Integrator=quasi-static",
+                                                "Time/Time step=0.5",
+                                                "Loads/Body force=0; 0",
+                                                "Loads/Tractions=press",
+                                                "Loads/press/Body=block",
+                                                "Loads/press/Kind=pressure",
+                                                "Loads/press/Where=y - 0.74",
+                                                "Loads/press/Value=1000*t"});
+  EXPECT_GT(columns.at("held_cells").back(), 0);
+  EXPECT_NEAR(columns.at("fy").back(), -1000, 3);
+}
+
+
 TEST(ContactRuns, ABlockSlidesAgainstFriction)
 {
   const auto check = [](const auto &columns, const double end, const double m) {
@@ -407,6 +425,231 @@ TEST(ContactRuns, TwoRodsExchangeTheirVelocities)
 }
 
 
+namespace
+{
+  /** A block lies on a drum that turns under it, between smooth walls. */
+  const Overrides drum = {"Geometry/Shapes=box, ball",
+                          "Geometry/box/Lower corner=0, 0.5",
+                          "Geometry/box/Upper corner=1, 1",
+                          "Geometry/ball/Kind=ball",
+                          "Geometry/ball/Centre=0.5, 0",
+                          "Geometry/ball/Radius=0.5",
+                          "Grid/Lower corner=0, 0.25",
+                          "Grid/Upper corner=1, 1.25",
+                          "Grid/Cells=16, 16",
+                          "Grid/Method=GIMP",
+                          "Materials/rubber/Law=neo-Hookean",
+                          "Materials/rubber/Density=1000",
+                          "Materials/rubber/Young's modulus=1e6",
+                          "Bodies/Names=block, tool",
+                          "Bodies/tool/Kind=rigid",
+                          "Bodies/tool/Contact=surface",
+                          "Bodies/tool/Shape=ball",
+                          "Bodies/tool/Rotation=0.5*t",
+                          "Bodies/tool/Centre=0.5, 0",
+                          "Contact/Pairs=foot",
+                          "Contact/foot/Bodies=block, tool",
+                          "Contact/foot/Kind=Coulomb",
+                          "Contact/foot/Friction coefficient=0.2",
+                          "Boundary conditions/left/Type=slip",
+                          "Boundary conditions/right/Type=slip",
+                          "Loads/Body force=0; -10",
+                          "Time/Integrator=theta",
+                          "Time/Theta=1",
+                          "Time/Time step=0.05",
+                          "Solver/Newton tolerance=1e-9",
+                          "Output/Probes=turn",
+                          "Output/turn/Kind=motion",
+                          "Output/turn/Of=tool",
+                          "Output/turn/Quantity=rotation",
+                          "Output/Reactions=fx, fy, moment",
+                          "Output/fx/On=tool",
+                          "Output/fx/Direction=1, 0",
+                          "Output/fy/On=tool",
+                          "Output/fy/Direction=0, 1",
+                          "Output/moment/On=tool",
+                          "Output/moment/Kind=moment",
+                          "Output/moment/About=0.5, 0"};
+} // namespace
+
+
+// What turns it is worn away by friction.
+TEST(ContactRuns, ADrumTurnsUnderABlock)
+{
+  const auto  columns = run_scene<2>("plane strain", drum);
+  const auto &time = columns.at("time"), &work = columns.at("external_work"),
+             &taken = columns.at("contact_work"), &turn = columns.at("turn");
+  for (unsigned int i = time.size() / 2; i < time.size(); ++i)
+    {
+      EXPECT_NEAR(columns.at("fy")[i] / -5000, 1, 1e-3);
+      EXPECT_NEAR(columns.at("moment")[i] / (-0.2 * 5000 * 0.5), 1, 2e-3);
+      EXPECT_NEAR(turn[i], 0.5 * time[i], 1e-12);
+      const double angle = turn[i] - turn[i - 1];
+      EXPECT_NEAR((work[i] - work[i - 1]) / (500 * angle), 1, 2e-3);
+      EXPECT_NEAR((taken[i] - taken[i - 1]) / (500 * angle), 1, 2e-3);
+    }
+}
+
+
+namespace
+{
+  /** A rigid disc that spins flies past the middle of a block and hits it. */
+  const Overrides flying_disc = {"Geometry/Shapes=box, ball",
+                                 "Geometry/box/Lower corner=0.8, 0.5",
+                                 "Geometry/box/Upper corner=1.4, 1.5",
+                                 "Geometry/ball/Kind=ball",
+                                 "Geometry/ball/Centre=0.5, 1.2",
+                                 "Geometry/ball/Radius=0.25",
+                                 "Grid/Upper corner=2, 2",
+                                 "Grid/Cells=16, 16",
+                                 "Grid/Method=GIMP",
+                                 "Materials/rubber/Law=neo-Hookean",
+                                 "Materials/rubber/Density=1",
+                                 "Materials/rubber/Young's modulus=10",
+                                 "Bodies/Names=block, tool",
+                                 "Bodies/tool/Kind=rigid",
+                                 "Bodies/tool/Contact=surface",
+                                 "Bodies/tool/Shape=ball",
+                                 "Bodies/tool/Motion=free",
+                                 "Bodies/tool/Density=2",
+                                 "Bodies/tool/Velocity=0.2, 0.05",
+                                 "Bodies/tool/Angular velocity=0.5",
+                                 "Contact/Pairs=foot",
+                                 "Contact/foot/Bodies=block, tool",
+                                 "Contact/foot/Kind=Coulomb",
+                                 "Contact/foot/Friction coefficient=0.3",
+                                 "Time/Integrator=Newmark",
+                                 "Time/Time step=0.02",
+                                 "Time/End time=1.2",
+                                 "Solver/Newton tolerance=1e-10",
+                                 "Output/Probes=fx, vy, turn, spin",
+                                 "Output/fx/Kind=motion",
+                                 "Output/fx/Of=tool",
+                                 "Output/vy/Kind=motion",
+                                 "Output/vy/Of=tool",
+                                 "Output/vy/Quantity=velocity",
+                                 "Output/vy/Component=1",
+                                 "Output/turn/Kind=motion",
+                                 "Output/turn/Of=tool",
+                                 "Output/turn/Quantity=rotation",
+                                 "Output/spin/Kind=motion",
+                                 "Output/spin/Of=tool",
+                                 "Output/spin/Quantity=angular velocity"};
+} // namespace
+
+
+// It flies freely, hits, and flies off; nothing is lost to the other. What is
+// lost of angular momentum goes with lumped masses of the grid, with the square
+// of its cells.
+TEST(ContactRuns, AFreeDiscHitsABlock)
+{
+  const double        mass = 2 * numbers::PI / 16;
+  std::vector<double> lost;
+  for (const std::string cells : {"16, 16", "32, 32"})
+    {
+      const auto columns =
+        run_scene<2>("plane strain",
+                     flying_disc + Overrides{"Grid/Cells=" + cells});
+      const auto &x = columns.at("momentum_x"), &y = columns.at("momentum_y"),
+                 &moment = columns.at("angular_momentum_z"),
+                 &energy = columns.at("total_energy"),
+                 &force  = columns.at("foot_normal_force"),
+                 &spin   = columns.at("spin");
+      EXPECT_GT(*std::max_element(force.begin(), force.end()), 0.1);
+      EXPECT_EQ(force.back(), 0);
+      EXPECT_EQ(force.front(), 0);
+      EXPECT_NEAR(moment.front() /
+                    (mass * (0.5 * 0.05 - 1.2 * 0.2 + 0.5 * 0.25 * 0.25 / 2)),
+                  1,
+                  1e-4);
+      lost.push_back(std::abs(moment.back() / moment.front() - 1));
+      for (unsigned int i = 0; i < x.size(); ++i)
+        {
+          EXPECT_NEAR(x[i], mass * 0.2, 1e-4 * mass);
+          EXPECT_NEAR(x[i], x[0], 1e-8 * x[0]);
+          EXPECT_NEAR(y[i], y[0], 1e-8 * x[0]);
+          EXPECT_LT(energy[i], 1.001 * energy[0]);
+        }
+      EXPECT_GT(energy.back(), 0.7 * energy[0]);
+      EXPECT_NEAR(spin.front(), 0.5, 1e-12);
+      EXPECT_GT(std::abs(spin.back() - 0.5), 0.05);
+      EXPECT_EQ(spin.back(), spin[spin.size() - 2]);
+    }
+  EXPECT_LT(lost[0], 0.02);
+  EXPECT_LT(lost[1], 0.4 * lost[0]);
+}
+
+
+// Falls through nothing, by the body force.
+TEST(ContactRuns, AFreeBodyFalls)
+{
+  const auto columns =
+    run_scene<2>("plane strain",
+                 flying_disc + Overrides{"Loads/Body force=-1 - 6*t; -2",
+                                         "Time/End time=0.2"});
+  const double t = 0.2;
+  EXPECT_NEAR(columns.at("fx").back(),
+              0.2 * t - t * t / 2 - t * t * t,
+              0.02 * 0.02 * t);
+  EXPECT_NEAR(columns.at("vy").back(), 0.05 - 2 * t, 1e-12);
+  EXPECT_NEAR(columns.at("turn").back(), 0.5 * t, 1e-12);
+  EXPECT_NEAR(columns.at("energy_gain").back(), 0, 1e-4);
+}
+
+
+namespace
+{
+  /** A box with three different inertias, that turns and meets nothing yet. */
+  Overrides
+  tumbling(const unsigned int n_steps)
+  {
+    return {"Geometry/Shapes=box, brick",
+            "Geometry/box/Upper corner=0.5, 1, 1",
+            "Geometry/brick/Lower corner=2, 0, 0",
+            "Geometry/brick/Upper corner=2.1, 0.2, 0.3",
+            "Bodies/Names=block, tool",
+            "Bodies/tool/Kind=rigid",
+            "Bodies/tool/Contact=surface",
+            "Bodies/tool/Shape=brick",
+            "Bodies/tool/Motion=free",
+            "Bodies/tool/Density=100",
+            "Bodies/tool/Angular velocity=0.3, 2, 0.1",
+            "Contact/Pairs=foot",
+            "Contact/foot/Bodies=block, tool",
+            "Contact/foot/Kind=frictionless",
+            "Time/Integrator=Newmark",
+            "Time/End time=1",
+            "Time/Time step=" + std::to_string(1. / n_steps)};
+  }
+} // namespace
+
+
+// In space the angular momentum turns with the axes of the body, to second
+// order.
+TEST(ContactRuns, ABrickTumbles)
+{
+  std::vector<double> errors;
+  for (const unsigned int n : {20, 40})
+    {
+      const auto columns = run_scene<3>("3D", tumbling(n));
+      double     error   = 0;
+      for (const std::string direction : {"x", "y", "z"})
+        {
+          const auto &moment = columns.at("angular_momentum_" + direction);
+          EXPECT_GT(std::abs(moment.front()), 1e-4);
+          error = std::max(error, std::abs(moment.back() - moment.front()));
+        }
+      EXPECT_LT(error, 1e-3 * columns.at("angular_momentum_y")[0]);
+      errors.push_back(error);
+      EXPECT_NEAR(columns.at("kinetic_energy").back() /
+                    columns.at("kinetic_energy")[0],
+                  1,
+                  1e-3);
+    }
+  EXPECT_GT(errors[0] / errors[1], 3.5);
+}
+
+
 // The grid is fine where the rigid body is near.
 TEST(ContactRuns, OnAGridThatAdapts)
 {
@@ -480,6 +723,8 @@ TEST(ContactRunsMpi, OnAnyNumberOfRanks)
   compare<2>("plane strain",
              incline<2>("0.1", "1e6") + Overrides{"Time/End time=0.2"});
   compare<2>("plane strain", rods + meet_soon);
+  compare<2>("plane strain", drum + Overrides{"Time/End time=0.3"});
+  compare<2>("plane strain", flying_disc + Overrides{"Time/End time=0.6"});
 }
 
 
@@ -533,5 +778,7 @@ TEST(ContactRunsMpi, RestartInContact)
 {
   expect_restart(incline<2>("0.1", "1e6"));
   expect_restart(incline<2>("0.5", "1e6"));
+  expect_restart(drum);
+  expect_restart(flying_disc + Overrides{"Geometry/ball/Centre=0.53, 1.2"});
   expect_restart(rods + meet_soon);
 }

@@ -180,10 +180,9 @@ namespace impm
                scene.loads.tractions,
                grid)
       , rigid(scene.bodies, scene.geometry, grid)
-      , surfaces(scene.contact.pairs.empty() ?
-                   nullptr :
-                   std::make_unique<SurfacePoints<dim>>(
-                     scene.contact, scene.bodies, scene.geometry, grid))
+      , surfaces(SurfacePoints<dim>::exist_in(scene) ?
+                   std::make_unique<SurfacePoints<dim>>(scene, grid) :
+                   nullptr)
       , policy(scene.faces)
       , integrator(make_time_integrator(scene.time))
       , builder(scene.grid)
@@ -282,10 +281,14 @@ namespace impm
       std::vector<dealii::Tensor<1, dim>> increments;
       problem->footprints.interpolate(result.increment, increments);
       advance_points(*problem, result, increments, scene.time, points);
+      if (problem->contact)
+        problem->contact->remember_meetings(*surfaces);
       if (surfaces)
-        problem->contact->advance(result.increment, *surfaces);
+        surfaces->advance(*problem->surface_prints, result.increment);
       if (grid.keeps_motion || surfaces)
         policy.advance(grid, result, time, time + dt);
+      if (problem->free_bodies)
+        problem->free_bodies->advance(rigid);
       points.sort();
       if (surfaces)
         surfaces->sort();
@@ -336,7 +339,7 @@ namespace impm
     BackgroundGrid<dim>                       grid;
     MaterialPoints<dim>                       points;
     RigidBodies<dim>                          rigid;
-    const std::unique_ptr<SurfacePoints<dim>> surfaces; ///< if any meet others
+    const std::unique_ptr<SurfacePoints<dim>> surfaces; ///< or null
     GridPolicy<dim>                           policy;
     std::unique_ptr<TimeIntegrator>           integrator;
     FootprintBuilder<dim>                     builder;

@@ -1,6 +1,7 @@
 #ifndef impm_balance_terms_contact_h
 #define impm_balance_terms_contact_h
 
+#include <impm/balance/free_bodies.h>
 #include <impm/balance/terms/term.h>
 #include <impm/contact/contact_links.h>
 
@@ -33,13 +34,16 @@ namespace impm
    * agree. What is beyond the bound is dissipated.
    *
    * Normals of obstacles are those where points come to; of other bodies, those
-   * at the start of the step.
+   * at the start of the step. Friction acts along the surface at the start, on
+   * an obstacle that turns where the last solution has brought the point: that
+   * is renewed with its bound.
    */
   template <int dim>
   class Contact : public Term
   {
   public:
-    explicit Contact(ContactLinks<dim> links);
+    /** With the free bodies of the scene, or null. Collective. */
+    Contact(ContactLinks<dim> links, FreeBodies<dim> *free, MPI_Comm comm);
 
     bool
     evaluate(const Vector &u, bool with_tangent) override;
@@ -65,11 +69,20 @@ namespace impm
     void
     project_tangent() override;
 
-    /** Takes the bounds of friction from the pressures of the state; returns
-     * whether they have changed so much that the step is to be solved anew.
-     * Collective. */
+    /** What free bodies give way by. Collective. */
+    void
+    add_correction(const Vector &like, LowRank &correction) const override;
+
+    /** Takes the bounds of friction, and on what turns its directions, from
+     * the state; returns whether they have changed so much that the step is to
+     * be solved anew. Collective. */
     bool
     renew_friction(MPI_Comm communicator);
+
+    /** Sum of what presses, without regard to direction (N), in the state.
+     * Collective. */
+    double
+    total_force() const;
 
     /** What the layers store and friction has taken in the step (J), of this
      * rank. */
@@ -81,19 +94,22 @@ namespace impm
     dealii::Tensor<1, dim>
     force_on_partner(unsigned int pair) const;
 
+    /** Its moment about a point (N m), at the places of the state. */
+    RotationVector
+    moment_on_partner(unsigned int pair, const dealii::Point<dim> &about) const;
+
     /** Of a pair of the scene, in the state. Collective. */
     ContactFigures
     figures(unsigned int pair, MPI_Comm communicator) const;
 
-    /** The work (J) of obstacles on the bodies in the step, taking forces for
-     * the mean of those at both ends. Of this rank. */
+    /** The work (J) of obstacles, but free bodies, on the others in the step,
+     * taking forces for the mean of those at both ends. Of this rank. */
     double
     work_of_obstacles() const;
 
-    /** Moves points with their surfaces, which keep what they have met. They
-     * are to be sorted next. */
+    /** Lets the points of the surfaces know what they have met. */
     void
-    advance(const Vector &increment, SurfacePoints<dim> &points) const;
+    remember_meetings(SurfacePoints<dim> &points) const;
 
     /** Smallest gap over its layer, of this rank: below 0 where surfaces touch,
      * -1 where a layer is pressed through. */
@@ -104,16 +120,17 @@ namespace impm
     std::size_t
     memory_consumption() const
     {
-      return bytes_of(all.links, all.nodes, all.coefficients, states, bounds) +
-             all.prints.memory_consumption();
+      return bytes_of(all.links, all.nodes, all.coefficients, states, bounds);
     }
 
     const ContactLinks<dim> all;
 
   private:
-    /** Of a link, at an increment. */
+    /** Of a link, at an increment. Directions are those of space. */
     struct State
     {
+      dealii::Point<dim>     place;      ///< (m)
+      dealii::Tensor<1, dim> carried;    ///< way of the obstacle there (m)
       double                 energy = 0; ///< per area (J/m^2)
       dealii::Tensor<1, dim> gradient;   ///< on the partner (Pa)
       /** Derivative of the gradient but for the curvature of obstacles, and
@@ -126,8 +143,27 @@ namespace impm
       dealii::Tensor<1, dim> slip;
     };
 
+    /** After a way along the other surface, as seen from there. */
     State
     state_at(unsigned int link, const dealii::Tensor<1, dim> &way) const;
+
+    /** After an increment of the point, or of what is faced less than that. */
+    State
+    state_after(unsigned int                  link,
+                const dealii::Tensor<1, dim> &increment) const;
+
+    /** What contact does on the free bodies as they are. Collective. */
+    std::vector<typename FreeBodies<dim>::Load>
+    loads_on_free_bodies() const;
+
+    /** The states for increments of links, with the free bodies where they
+     * are settled; false if they do not settle. Collective. */
+    bool
+    settle(const std::vector<dealii::Tensor<1, dim>> &increments);
+
+    /** Of what is exerted at a link, by a further motion of its free body. */
+    dealii::Tensor<1, dim>
+    change_by(unsigned int link, unsigned int component) const;
 
     /** Adds a gradient at the nodes of a link. */
     void
@@ -137,10 +173,15 @@ namespace impm
 
     /** sum_k c_k u_k (m). */
     dealii::Tensor<1, dim>
-    way_of(const ContactLink<dim> &link, const Vector &u) const;
+    increment_of(const ContactLink<dim> &link, const Vector &u) const;
 
     std::vector<State>  states;
     std::vector<double> bounds; ///< of friction (Pa)
+    /** Across which it acts, as an obstacle is at the start of the step. */
+    std::vector<dealii::Tensor<1, dim>> normals;
+    std::vector<RigidMotion<dim>>       motions; ///< of obstacles, by pair
+    FreeBodies<dim> *const              free;
+    const MPI_Comm                      communicator;
   };
 } // namespace impm
 

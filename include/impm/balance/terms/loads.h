@@ -8,11 +8,15 @@
 
 namespace impm
 {
+  template <int dim>
+  class SurfacePoints;
+
   /**
    * Forces from outside, which do not depend on the increment: body force,
-   * tractions on points (Sulsky & Kaul 2004, eq. 2.2.7, the points of a layer
-   * being the quadrature points of the surface) and, with a Lagrangian grid, on
-   * faces of the domain that have material behind them. Tractions are forces
+   * tractions on the surfaces of bodies, on points (Sulsky & Kaul 2004, eq.
+   * 2.2.7, the points of a layer being the quadrature points of the surface)
+   * and, with a Lagrangian grid, on faces of the domain that have material
+   * behind them. Tractions are forces
    * per area as it was made, whose direction does not follow the material.
    */
   template <int dim>
@@ -24,13 +28,16 @@ namespace impm
     exist_in(const Scene<dim> &scene);
 
     /** For the step from one time to another. `mass` is that of the nodes, or
-     * empty if it has not been gathered yet. Collective. */
+     * empty if it has not been gathered yet; surfaces and their footprints are
+     * null where there are none. Collective. */
     Loads(const Scene<dim>          &scene,
           const BackgroundGrid<dim> &grid,
           const MaterialPoints<dim> &points,
           const Footprints<dim>     &footprints,
           const PopulatedCells<dim> &populated,
           const Discretization<dim> &discretization,
+          const SurfacePoints<dim>  *surfaces,
+          const Footprints<dim>     *surface_prints,
           const Vector              &mass,
           double                     from,
           double                     to);

@@ -70,11 +70,18 @@ namespace impm
       return squares;
     }
 
+    /** Lets springs be at rest at an increment. */
+    void
+    rest_at(const Vector &u)
+    {
+      known.equ(factor, u);
+    }
+
     const Vector weight;
 
   private:
     const double factor;
-    const Vector known;
+    Vector       known;
   };
 } // namespace impm
 

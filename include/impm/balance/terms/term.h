@@ -6,6 +6,7 @@
 #include <deal.II/lac/full_matrix.h>
 
 #include <impm/balance/residual_norm.h>
+#include <impm/solve/nonlinear_system.h>
 
 #include <functional>
 #include <vector>
@@ -94,6 +95,14 @@ namespace impm
                                  i % n_components) += block(i, i);
       });
     }
+
+    /**
+     * Adds what df/du has beyond apply() and add_matrix(): left times right,
+     * vectors as `like`, whose ghosts are summed later. Collective.
+     */
+    virtual void
+    add_correction(const Vector & /*like*/, LowRank & /*correction*/) const
+    {}
 
     /** Replaces df/du by its positive part. */
     virtual void

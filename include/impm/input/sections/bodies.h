@@ -3,7 +3,7 @@
 
 #include <impm/input/sections/grid.h>
 #include <impm/input/sections/materials.h>
-#include <impm/scene/shapes.h>
+#include <impm/scene/rigid_inertia.h>
 
 #include <array>
 #include <memory>
@@ -50,11 +50,23 @@ namespace impm
 
     /** Of a rigid body: displacement since t = 0 as a function of time. */
     std::shared_ptr<dealii::FunctionParser<1>> displacement;
+    /** Likewise: turn (rad) about a centre, which moves with it, and an axis of
+     * length one. Null: none. */
+    std::shared_ptr<dealii::FunctionParser<1>> rotation;
+    dealii::Point<dim>                         centre; ///< at the start (m)
+    dealii::Tensor<1, 3>                       axis;
     /** Direction in which alone a rigid body holds its nodes; dim: in all. */
     unsigned int slip_normal = dim;
     /** A rigid body that has no points and holds none, but meets surfaces (see
      * ContactSpec). */
     bool meets_surfaces = false;
+
+    /** A rigid body that forces move, which meets surfaces; `centre` is that of
+     * its mass. */
+    bool                   is_free = false;
+    RigidInertia<dim>      inertia;
+    dealii::Tensor<1, dim> free_velocity; ///< at the start (m/s)
+    dealii::Tensor<1, 3>   free_spin;     ///< likewise (rad/s)
   };
 
   template <int dim>

@@ -1,7 +1,7 @@
 #ifndef impm_input_sections_boundary_conditions_h
 #define impm_input_sections_boundary_conditions_h
 
-#include <impm/input/sections/grid.h>
+#include <impm/input/sections/bodies.h>
 
 #include <algorithm>
 #include <array>
@@ -36,6 +36,25 @@ namespace impm
     std::shared_ptr<dealii::FunctionParser<dim>> value;
     /** Force per initial area (Pa), or null. */
     std::shared_ptr<dealii::FunctionParser<dim>> traction;
+    /** Into the body, across the face as it is by then (Pa), or null. */
+    std::shared_ptr<dealii::FunctionParser<dim>> pressure;
+    bool is_pressed = false; ///< whether that is one
+  };
+
+  /** What holds a part of a deformable body, on the nodes of its cells. */
+  template <int dim>
+  struct GripSpec
+  {
+    std::string  name, body_name;
+    unsigned int body; ///< in the scene's list
+    /** Positive at the initial places of the points that it holds. */
+    std::shared_ptr<dealii::FunctionParser<dim>> where;
+    std::array<bool, dim> constrained{}; ///< which components are prescribed
+    bool                  is_velocity = false;
+    /** Prescribed displacement, in the places at the start, or velocity, in
+     * those of now (m or m/s). */
+    std::shared_ptr<dealii::FunctionParser<dim>> value;
+    bool varies = false; ///< with the place
   };
 
   template <int dim>
@@ -49,10 +68,12 @@ namespace impm
   /** Warns of faces that are to move and will lose their material. */
   template <int dim>
   void
-  add_boundary_conditions(const Section            &top,
-                          Faces<dim>               &faces,
-                          const GridSpec<dim>      &grid,
-                          std::vector<std::string> &warnings);
+  add_boundary_conditions(const Section              &top,
+                          Faces<dim>                 &faces,
+                          std::vector<GripSpec<dim>> &grips,
+                          const Bodies<dim>          &bodies,
+                          const GridSpec<dim>        &grid,
+                          std::vector<std::string>   &warnings);
 } // namespace impm
 
 #endif

@@ -18,6 +18,9 @@ namespace impm
 
   bool
   is_three_d(const ParameterFile::Chosen &chosen);
+
+  bool
+  is_axisymmetric(const ParameterFile::Chosen &chosen);
 } // namespace impm
 
 #endif

@@ -22,7 +22,15 @@ namespace impm
       spread, ///< largest minus smallest
       mean,   ///< weighted by initial volume
       extent, ///< largest coordinate, the points' domains included
-      motion  ///< displacement of a moving face or rigid body
+      motion  ///< of a moving face or rigid body
+    };
+    /** Of a motion: rotations are about three axes, in the plane z alone. */
+    enum class Quantity
+    {
+      displacement,
+      velocity,
+      rotation,
+      angular_velocity
     };
     std::string              name;
     Kind                     kind;
@@ -32,15 +40,20 @@ namespace impm
     std::vector<double>      position;
     std::vector<std::string> bodies; ///< empty: all
     std::string              of;     ///< motion: face or rigid body
+    Quantity                 quantity = Quantity::displacement;
     /** Positive at the initial places of the points that count; null: all. */
     std::function<double(const double *initial_position)> where;
   };
 
-  /** Force of the material on a face or a rigid body, along a direction. */
+  /** Force of the material on a face or a rigid body, along a direction, or its
+   * moment about a point: in space along the direction, in the plane about z,
+   * at the end of a step. */
   struct ReactionSpec
   {
     std::string         name;
     std::string         on;
+    bool                is_moment = false;
+    std::vector<double> about; ///< (m)
     std::vector<double> direction;
     double              factor = 1;
   };
@@ -63,10 +76,11 @@ namespace impm
 
   template <int dim>
   void
-  add_output(const Section     &top,
-             OutputSpec        &output,
-             const Faces<dim>  &faces,
-             const Bodies<dim> &bodies);
+  add_output(const Section                    &top,
+             OutputSpec                       &output,
+             const Faces<dim>                 &faces,
+             const std::vector<GripSpec<dim>> &grips,
+             const Bodies<dim>                &bodies);
 
   /** Refuses what is no field of the points, in 3D also one of the plane. */
   void

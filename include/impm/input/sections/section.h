@@ -12,6 +12,7 @@
 #include <impm/input/parameter_file.h>
 
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <limits>
 #include <map>
@@ -180,6 +181,26 @@ namespace impm
           function = read_expressions<n_variables>(
             prm, entry, form.n_components, form.is_in_time, constants);
         });
+    }
+
+    /** The same of a motion, a component of which may be 'free': it is not
+     * held then. At least one is. */
+    template <int dim, std::size_t n_components>
+    void
+    add(const std::string                            &entry,
+        std::shared_ptr<dealii::FunctionParser<dim>> &function,
+        std::array<bool, n_components>               &held,
+        const std::string                            &documentation) const
+    {
+      text(entry, "", Patterns::Anything(), documentation);
+      if (!is_read)
+        return;
+      inside([&](const auto &prm) {
+        function = read_expressions<dim>(
+          prm, entry, n_components, in_time, constants, held.data());
+      });
+      if (std::count(held.begin(), held.end(), true) == 0)
+        refuse(entry, "allowed is at least one component that is not free");
     }
 
     /** Adds an entry of `n` numbers between commas; zeros when not read. */

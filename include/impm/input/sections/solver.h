@@ -98,7 +98,8 @@ namespace impm
   add_solver(const Section     &top,
              SolverSpec        &solver,
              const TimeSpec    &time,
-             const Bodies<dim> &bodies);
+             const Bodies<dim> &bodies,
+             bool               has_following_loads);
 } // namespace impm
 
 #endif

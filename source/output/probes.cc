@@ -161,15 +161,16 @@ namespace impm
                 value += (F[component][d] - (component == d ? 1 : 0)) *
                          (spec.position[d] - start[d]);
             }
-          if (spec.kind == Kind::extent)
+          if (spec.kind == Kind::extent || spec.kind == Kind::lower_extent)
             {
               // Half the box that the point stands for, stretched by F.
-              const auto    F = deformation_gradient(points, point);
+              const double  side = spec.kind == Kind::extent ? 0.5 : -0.5;
+              const auto    F    = deformation_gradient(points, point);
               const double *domain =
                 points.fields(point) + points.layout.offset("initial_domain");
               value = particle.get_location()[component];
               for (unsigned int d = 0; d < dim; ++d)
-                value += 0.5 * std::abs(F[component][d]) * domain[d];
+                value += side * std::abs(F[component][d]) * domain[d];
             }
           smallest = std::min(smallest, value);
           largest  = std::max(largest, value);
@@ -180,7 +181,7 @@ namespace impm
       if (spec.kind == Kind::mean)
         return Utilities::MPI::sum(sum, comm) /
                Utilities::MPI::sum(weight, comm);
-      if (spec.kind == Kind::smallest)
+      if (spec.kind == Kind::smallest || spec.kind == Kind::lower_extent)
         return Utilities::MPI::min(smallest, comm);
       largest = Utilities::MPI::max(largest, comm);
       return spec.kind == Kind::spread ?

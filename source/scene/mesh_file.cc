@@ -1,3 +1,5 @@
+#include <deal.II/base/mpi.h>
+
 #include <deal.II/grid/grid_in.h>
 #include <deal.II/grid/tria.h>
 
@@ -9,10 +11,12 @@
 #include <boost/algorithm/string.hpp>
 #include <boost/lexical_cast.hpp>
 #include <gmsh.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <csignal>
 #include <iostream>
 #include <map>
 #include <regex>
@@ -69,6 +73,56 @@ namespace impm
       }
     };
 
+    /** What is left to say where Gmsh's library crashes. */
+    std::string last_words;
+
+    extern "C" void
+    say_last_words(int)
+    {
+      // Rank 0 speaks for all, before the others end the run.
+      if (last_words.empty())
+        ::sleep(1);
+      else if (::write(STDERR_FILENO, last_words.data(), last_words.size()) < 0)
+        ::_exit(3);
+      ::_exit(1);
+    }
+
+    /**
+     * Gmsh's library trusts files: some damaged ones, with elements of nodes
+     * that are not there, make it read what is not its own. As long as this
+     * lives, such a crash is bad input like any other.
+     */
+    class CrashGuard
+    {
+    public:
+      explicit CrashGuard(const std::string &file_name)
+      {
+        const bool is_root =
+          !Utilities::MPI::job_supports_mpi() ||
+          Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
+        last_words              = is_root ?
+                                    "impm_dealii: bad input: found '" + file_name +
+                         "', which crashes Gmsh's library: it is damaged "
+                                      "(Gmsh itself tells more)\n" :
+                                    "";
+        struct sigaction action = {};
+        action.sa_handler       = say_last_words;
+        for (const int signal : signals)
+          sigaction(signal, &action, &before[signal]);
+      }
+
+      ~CrashGuard()
+      {
+        for (const int signal : signals)
+          sigaction(signal, &before[signal], nullptr);
+      }
+
+    private:
+      static constexpr std::array<int, 4> signals = {
+        {SIGSEGV, SIGBUS, SIGFPE, SIGABRT}};
+      std::map<int, struct sigaction> before;
+    };
+
     /** The corners of faces of elements of the dimension, or, if they are one
      * lower, of the elements. */
     void
@@ -120,8 +174,9 @@ namespace impm
     Content
     read_by_gmsh(const std::string &file_name, const unsigned int dim)
     {
-      const Gmsh gmsh;
-      Content    content;
+      const CrashGuard guard(file_name);
+      const Gmsh       gmsh;
+      Content          content;
       try
         {
           gmsh::merge(file_name);

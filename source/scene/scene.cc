@@ -209,7 +209,8 @@ namespace impm
       layout.add("parent", Kind::scalar);
     if (scene.grid.method == GridMethod::gimp || splits ||
         any_of(scene.output.probes, [](const auto &probe) {
-          return probe.kind == ProbeSpec::Kind::extent;
+          return probe.kind == ProbeSpec::Kind::extent ||
+                 probe.kind == ProbeSpec::Kind::lower_extent;
         }))
       layout.add("initial_domain", Kind::vector);
 

@@ -71,6 +71,7 @@ namespace impm
   void
   LinearSolver::take_tangent()
   {
+    system.take_tangent();
     take_sparse_tangent();
     take_correction();
   }

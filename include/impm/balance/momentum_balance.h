@@ -91,6 +91,13 @@ namespace impm
     work_along(const Vector &direction, const Vector &force) const override;
 
     void
+    take_tangent() override
+    {
+      for (Term *term : parts.strain_terms)
+        term->take_tangent();
+    }
+
+    void
     project_tangent() override
     {
       for (Term *term : parts.strain_terms)

@@ -86,6 +86,11 @@ namespace impm
     virtual double
     work_along(const Vector &direction, const Vector &force) const = 0;
 
+    /** The next steps are found with the tangent of the state. */
+    virtual void
+    take_tangent()
+    {}
+
     /** Replaces the tangent, a symmetric one, by its positive part: the next
      * step descends. */
     virtual void

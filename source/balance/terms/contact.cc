@@ -17,6 +17,33 @@ namespace impm
   } // namespace
 
   template <int dim>
+  typename Contact<dim>::Friction
+  Contact<dim>::friction_at(const unsigned int    l,
+                            const Tensor<1, dim> &slip) const
+  {
+    const double bound = bounds[l];
+    const double c     = friction_stiffness * all.links[l].stiffness;
+    const double way   = slip.norm();
+    const auto   along = unit_symmetric_tensor<dim>() -
+                       symmetrize(outer_product(normals[l], normals[l]));
+    if (c * way <= bound)
+      return {slip, c * slip, c * along};
+    const auto     direction = slip / way;
+    Tensor<1, dim> known     = bound * direction;
+    if (!at_tangent.empty())
+      {
+        const auto &last = at_tangent[l];
+        known            = last.force + last.tangent * (slip - last.slip);
+        known -= (known * normals[l]) * normals[l];
+        known *= std::min(1., bound / known.norm());
+      }
+    return {slip,
+            bound * direction,
+            (bound * along - symmetrize(outer_product(known, direction))) /
+              way};
+  }
+
+  template <int dim>
   typename Contact<dim>::State
   Contact<dim>::state_at(const unsigned int l, const Tensor<1, dim> &way) const
   {
@@ -53,27 +80,14 @@ namespace impm
       }
 
     state.slip -= (state.slip * normals[l]) * normals[l];
-    if (const double bound = bounds[l]; bound > 0)
+    if (bounds[l] > 0)
       {
-        const double c = friction_stiffness * k, slip = state.slip.norm();
-        const auto   along = unit_symmetric_tensor<dim>() -
-                           symmetrize(outer_product(normals[l], normals[l]));
-        state.friction = std::min(c * slip, bound);
-        if (c * slip <= bound)
-          {
-            state.energy += 0.5 * c * slip * slip;
-            state.gradient += c * state.slip;
-            state.tangent += c * along;
-          }
-        else
-          {
-            const auto direction = state.slip / slip;
-            state.energy += bound * (slip - 0.5 * bound / c);
-            state.gradient += bound * direction;
-            state.tangent +=
-              bound / slip *
-              (along - symmetrize(outer_product(direction, direction)));
-          }
+        state.shear          = friction_at(l, state.slip);
+        state.friction       = state.shear.force.norm();
+        const double sheared = state.friction / (friction_stiffness * k);
+        state.energy += state.friction * (state.slip.norm() - 0.5 * sheared);
+        state.gradient += state.shear.force;
+        state.tangent += state.shear.tangent;
       }
     return state;
   }
@@ -410,6 +424,15 @@ namespace impm
                              all.nodes.begin() + link.end),
              block);
       }
+  }
+
+  template <int dim>
+  void
+  Contact<dim>::take_tangent()
+  {
+    at_tangent.resize(states.size());
+    for (unsigned int l = 0; l < states.size(); ++l)
+      at_tangent[l] = states[l].shear;
   }
 
   template <int dim>

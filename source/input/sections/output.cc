@@ -148,7 +148,9 @@ namespace impm
     /** Of a vector. */
     template <int dim>
     void
-    add_component(const Section &section, ProbeSpec &probe)
+    add_component(const Section &section,
+                  const bool     has_field,
+                  ProbeSpec     &probe)
     {
       const bool is_rotation =
         probe.quantity == ProbeSpec::Quantity::rotation ||
@@ -162,8 +164,7 @@ namespace impm
                   probe.component,
                   {"0", 0, 8},
                   "Of the vector or, by rows, of the 3 x 3 tensor.");
-      if ((probe.kind == Kind::motion || probe.kind == Kind::extent) &&
-          probe.component >= dim)
+      if (!has_field && probe.component >= dim)
         section.refuse("Component",
                        "allowed is less than " + std::to_string(dim));
     }
@@ -185,12 +186,13 @@ namespace impm
          {"spread", Kind::spread},
          {"mean", Kind::mean},
          {"extent", Kind::extent},
+         {"lower extent", Kind::lower_extent},
          {"motion", Kind::motion}},
         "point: at the point nearest to a place at the start, from which a "
         "displacement is carried on to the place by F. Largest, smallest, "
         "spread (their difference), mean: over bodies. Extent: largest "
-        "coordinate, the points' domains included. Motion: of a moving face or "
-        "a rigid body.");
+        "coordinate, the points' domains included, and lower extent the "
+        "smallest. Motion: of a moving face or a rigid body.");
       if (probe.kind == Kind::point)
         probe.position =
           section.numbers("Position", dim, "Place at the start (m).");
@@ -198,8 +200,9 @@ namespace impm
         add_mover(section, probe, faces, bodies);
       else
         add_region(section, probe, bodies);
-      const bool has_field =
-        probe.kind != Kind::motion && probe.kind != Kind::extent;
+      const bool has_field = probe.kind != Kind::motion &&
+                             probe.kind != Kind::extent &&
+                             probe.kind != Kind::lower_extent;
       if (has_field)
         {
           section.add("Field",
@@ -208,7 +211,7 @@ namespace impm
                       "displacement");
           check_field(section, "Field", probe.field, dim);
         }
-      add_component<dim>(section, probe);
+      add_component<dim>(section, has_field, probe);
       section.add("Factor", probe.factor, {"1"}, "Multiplies the figure.");
     }
 

@@ -309,6 +309,27 @@ TEST(MeshFile, CutFilesAreRefused)
       }
 }
 
+// Gmsh's library looks for the node where there is none.
+TEST(MeshFileDeathTest, ADamagedFileIsBadInput)
+{
+  const MeshFile file(replaced(square.msh(), "\n9 3 2 1 1 ", "\n9 3 2 1 1 1"),
+                      ".msh");
+  const auto     read = [&]() {
+    try
+      {
+        create<2>("mesh", {{"File", file.name}});
+      }
+    catch (const InputError &error)
+      {
+        std::cerr << error.what();
+        std::_Exit(1);
+      }
+  };
+  EXPECT_EXIT(read(),
+              testing::ExitedWithCode(1),
+              "which crashes Gmsh's library|which is no mesh of that format");
+}
+
 TEST(MeshFile, ScaleIsPositive)
 {
   const MeshFile file(square.msh(), ".msh");

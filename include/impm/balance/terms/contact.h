@@ -31,7 +31,13 @@ namespace impm
    * up to the coefficient times the pressure. In a step it derives from an
    * energy, too, since that bound is fixed while the step is solved:
    * renew_friction() takes it from the pressures that came out, until they
-   * agree. What is beyond the bound is dissipated.
+   * agree. What is beyond the bound is dissipated. The tangent of what slips
+   * is nothing along the slip, for one side of a kink: where Newton's method
+   * takes it for the other, it would not settle. So the force there is taken
+   * for an unknown as well, as the method for total variation does (Chan,
+   * Golub & Mulet, SIAM J. Sci. Comput. 20, 1999): while the force of the last
+   * tangent, carried on by that, is not yet what the slip makes it, the tangent
+   * is stiffer; in the end it is exact.
    *
    * Normals of obstacles are those where points come to; of other bodies, those
    * at the start of the step. Friction acts along the surface at the start, on
@@ -65,6 +71,9 @@ namespace impm
 
     void
     add_matrix(bool only_pattern, const TakeBlock &take) const override;
+
+    void
+    take_tangent() override;
 
     void
     project_tangent() override;
@@ -120,12 +129,21 @@ namespace impm
     std::size_t
     memory_consumption() const
     {
-      return bytes_of(all.links, all.nodes, all.coefficients, states, bounds);
+      return bytes_of(
+        all.links, all.nodes, all.coefficients, states, bounds, at_tangent);
     }
 
     const ContactLinks<dim> all;
 
   private:
+    /** Of friction: what resists a slip, in the frame of the obstacle. */
+    struct Friction
+    {
+      dealii::Tensor<1, dim>          slip;    ///< (m)
+      dealii::Tensor<1, dim>          force;   ///< per area (Pa)
+      dealii::SymmetricTensor<2, dim> tangent; ///< (Pa/m)
+    };
+
     /** Of a link, at an increment. Directions are those of space. */
     struct State
     {
@@ -141,7 +159,12 @@ namespace impm
       double                          gap      = 0; ///< (m)
       /** Of the layer, before what is beyond the bound has slipped (m). */
       dealii::Tensor<1, dim> slip;
+      Friction               shear;
     };
+
+    /** Of a link, at a slip. */
+    Friction
+    friction_at(unsigned int link, const dealii::Tensor<1, dim> &slip) const;
 
     /** After a way along the other surface, as seen from there. */
     State
@@ -175,8 +198,9 @@ namespace impm
     dealii::Tensor<1, dim>
     increment_of(const ContactLink<dim> &link, const Vector &u) const;
 
-    std::vector<State>  states;
-    std::vector<double> bounds; ///< of friction (Pa)
+    std::vector<State>    states;
+    std::vector<Friction> at_tangent; ///< where one was taken, if any was
+    std::vector<double>   bounds;     ///< of friction (Pa)
     /** Across which it acts, as an obstacle is at the start of the step. */
     std::vector<dealii::Tensor<1, dim>> normals;
     std::vector<RigidMotion<dim>>       motions; ///< of obstacles, by pair

@@ -104,6 +104,11 @@ namespace impm
     add_correction(const Vector & /*like*/, LowRank & /*correction*/) const
     {}
 
+    /** The next step is found with df/du of the state. */
+    virtual void
+    take_tangent()
+    {}
+
     /** Replaces df/du by its positive part. */
     virtual void
     project_tangent()

@@ -19,10 +19,11 @@ namespace impm
                ///< displacement is carried on to the place by F
       largest, ///< over all points of the bodies
       smallest,
-      spread, ///< largest minus smallest
-      mean,   ///< weighted by initial volume
-      extent, ///< largest coordinate, the points' domains included
-      motion  ///< of a moving face or rigid body
+      spread,       ///< largest minus smallest
+      mean,         ///< weighted by initial volume
+      extent,       ///< largest coordinate, the points' domains included
+      lower_extent, ///< smallest, likewise
+      motion        ///< of a moving face or rigid body
     };
     /** Of a motion: rotations are about three axes, in the plane z alone. */
     enum class Quantity

@@ -14,6 +14,58 @@ namespace impm
 
     /** Bounds of friction agree when they differ by no more, in the mean. */
     constexpr double tolerance = 1e-3;
+
+    /** What a layer does at the end of a step. */
+    struct Layer
+    {
+      double pressure;  ///< (Pa)
+      double stiffness; ///< (Pa/m)
+      double potential; ///< (J/m^2)
+    };
+
+    Layer
+    layer_at(const double k, const double gap)
+    {
+      const double closed = std::max(0., -gap);
+      return {k * closed, closed > 0 ? k : 0., 0.5 * k * closed * closed};
+    }
+
+    /** t - log(1 + t) */
+    double
+    less_logarithm(const double t)
+    {
+      if (t > 1e-2)
+        return t - std::log1p(t);
+      double sum = 0;
+      for (unsigned int n = 9; n > 1; --n)
+        sum = 1. / n - t * sum;
+      return t * t * sum;
+    }
+
+    /** What the balance takes for that where it gives a weight to it and the
+     * rest to the pressure at the start: see Contact. */
+    Layer
+    layer_over(const double k,
+               const double start,
+               const double end,
+               const double weight)
+    {
+      const bool   part = start < 0 && end > 0, meet = start > 0 && end < 0;
+      const double t     = part || meet ? -end / start : 0.;
+      const double apart = 1 / (1 + t);
+      if (part && weight < 1)
+        {
+          const double let_go = (1 - weight) / weight * k;
+          return {let_go * start * t * apart,
+                  let_go * apart * apart,
+                  let_go * start * start * less_logarithm(t)};
+        }
+      if (meet && weight == 0.5)
+        return {-k * end * t * apart,
+                k * (1 - apart * apart),
+                k * start * start * (0.5 * t * t - less_logarithm(t))};
+      return layer_at(k, end);
+    }
   } // namespace
 
   template <int dim>
@@ -26,10 +78,10 @@ namespace impm
     state.slip = link.slip + way;
     if (link.is_bond)
       {
-        state.energy   = 0.5 * k * state.slip.norm_square();
-        state.gradient = k * state.slip;
-        state.tangent  = k * unit_symmetric_tensor<dim>();
-        state.pressure = -state.gradient * link.normal;
+        state.energy = state.potential = 0.5 * k * state.slip.norm_square();
+        state.gradient = state.end_gradient = k * state.slip;
+        state.tangent                       = k * unit_symmetric_tensor<dim>();
+        state.pressure                      = -state.gradient * link.normal;
         state.friction = (state.gradient + state.pressure * link.normal).norm();
         return state;
       }
@@ -43,38 +95,56 @@ namespace impm
         n                    = proximity.normal;
         curvature            = proximity.curvature;
       }
-    if (const double closed = -state.gap; closed > 0)
-      {
-        state.pressure = k * closed;
-        state.energy   = 0.5 * k * closed * closed;
-        state.gradient = -state.pressure * n;
-        state.tangent  = k * symmetrize(outer_product(n, n));
-        state.curved   = -state.pressure * curvature;
-      }
+    const auto at_end  = layer_at(k, state.gap);
+    const auto given   = layer_over(k, link.gap, state.gap, weight);
+    state.pressure     = at_end.pressure;
+    state.given        = given.pressure;
+    state.energy       = at_end.potential;
+    state.potential    = given.potential;
+    state.end_gradient = -at_end.pressure * n;
+    state.tangent      = given.stiffness * symmetrize(outer_product(n, n));
+    state.curved       = -given.pressure * curvature;
 
     state.slip -= (state.slip * normals[l]) * normals[l];
+    Tensor<1, dim> along_it;
     if (const double bound = bounds[l]; bound > 0)
       {
+        double       energy;
         const double c = friction_stiffness * k, slip = state.slip.norm();
         const auto   along = unit_symmetric_tensor<dim>() -
                            symmetrize(outer_product(normals[l], normals[l]));
         state.friction = std::min(c * slip, bound);
         if (c * slip <= bound)
           {
-            state.energy += 0.5 * c * slip * slip;
-            state.gradient += c * state.slip;
+            energy   = 0.5 * c * slip * slip;
+            along_it = c * state.slip;
             state.tangent += c * along;
           }
         else
           {
             const auto direction = state.slip / slip;
-            state.energy += bound * (slip - 0.5 * bound / c);
-            state.gradient += bound * direction;
+            energy               = bound * (slip - 0.5 * bound / c);
+            along_it             = bound * direction;
             state.tangent +=
               bound / slip *
               (along - symmetrize(outer_product(direction, direction)));
           }
+        state.energy += energy;
+        state.potential += energy;
+        state.end_gradient += along_it;
       }
+    const auto &start          = starts[l];
+    const auto  start_friction = start.gradient + start.pressure * link.normal;
+    if (bounds[l] < 0)
+      {
+        along_it =
+          bounds[l] / (link.friction * start.pressure) * start_friction;
+        state.potential += along_it * way;
+      }
+    if (weight < 1)
+      state.energy = at_end.potential +
+                     (weight * along_it + (1 - weight) * start_friction) * way;
+    state.gradient = along_it - given.pressure * n;
     return state;
   }
 
@@ -97,10 +167,11 @@ namespace impm
         const auto turn = [&](const SymmetricTensor<2, dim> &tangent) {
           return symmetrize(R * Tensor<2, dim>(tangent) * transpose(R));
         };
-        state.gradient = R * state.gradient;
-        state.tangent  = turn(state.tangent);
-        state.curved   = turn(state.curved);
-        state.slip     = R * state.slip;
+        state.gradient     = R * state.gradient;
+        state.end_gradient = R * state.end_gradient;
+        state.tangent      = turn(state.tangent);
+        state.curved       = turn(state.curved);
+        state.slip         = R * state.slip;
       }
     return state;
   }
@@ -120,9 +191,12 @@ namespace impm
   template <int dim>
   Contact<dim>::Contact(ContactLinks<dim>      links,
                         FreeBodies<dim> *const free,
+                        const double           weight,
                         const MPI_Comm         comm)
     : all(std::move(links))
+    , weight(weight)
     , states(all.links.size())
+    , starts(all.links.size())
     , free(free)
     , communicator(comm)
   {
@@ -131,6 +205,8 @@ namespace impm
         bounds.push_back(link.friction_bound);
         normals.push_back(link.normal);
       }
+    for (unsigned int l = 0; l < all.links.size(); ++l)
+      starts[l] = state_at(l, Tensor<1, dim>());
     motions.resize(all.obstacles.size());
     if (free != nullptr)
       {
@@ -328,10 +404,18 @@ namespace impm
 
   template <int dim>
   void
+  Contact<dim>::add_end_force(const Vector & /*u*/, Vector &force) const
+  {
+    for (unsigned int l = 0; l < states.size(); ++l)
+      add(l, states[l].end_gradient, force);
+  }
+
+  template <int dim>
+  void
   Contact<dim>::add_start_force(Vector &force) const
   {
     for (unsigned int l = 0; l < states.size(); ++l)
-      add(l, state_at(l, Tensor<1, dim>()).gradient, force);
+      add(l, starts[l].gradient, force);
   }
 
   template <int dim>
@@ -340,7 +424,7 @@ namespace impm
   {
     double sum = 0;
     for (unsigned int l = 0; l < states.size(); ++l)
-      sum += all.links[l].area * states[l].energy;
+      sum += all.links[l].area * states[l].potential;
     if (free != nullptr && Utilities::MPI::this_mpi_process(communicator) == 0)
       sum += free->potential();
     return sum;
@@ -429,11 +513,11 @@ namespace impm
       {
         const auto  &link = all.links[l];
         const double bound =
-          link.is_bond ? 0. : link.friction * states[l].pressure;
+          link.is_bond ? 0. : link.friction * states[l].given;
         sums[0] += link.area * std::abs(bound - bounds[l]);
-        sums[1] += link.area * bound;
+        sums[1] += link.area * std::abs(bound);
         bounds[l] = bound;
-        if (bound == 0 || link.obstacle == nullptr ||
+        if (bound <= 0 || link.obstacle == nullptr ||
             !motions[link.pair].turns())
           continue;
         const auto &state = states[l];
@@ -455,7 +539,7 @@ namespace impm
   {
     double sum = 0;
     for (unsigned int l = 0; l < states.size(); ++l)
-      sum += all.links[l].area * states[l].gradient.norm();
+      sum += all.links[l].area * states[l].end_gradient.norm();
     return Utilities::MPI::sum(sum, communicator);
   }
 
@@ -477,7 +561,7 @@ namespace impm
     Tensor<1, dim> force;
     for (unsigned int l = 0; l < states.size(); ++l)
       if (all.links[l].pair == pair)
-        force += all.links[l].area * states[l].gradient;
+        force += all.links[l].area * states[l].end_gradient;
     return force;
   }
 
@@ -489,8 +573,8 @@ namespace impm
     RotationVector moment;
     for (unsigned int l = 0; l < states.size(); ++l)
       if (all.links[l].pair == pair)
-        moment += all.links[l].area *
-                  moment_of<dim>(states[l].place - about, states[l].gradient);
+        moment += all.links[l].area * moment_of<dim>(states[l].place - about,
+                                                     states[l].end_gradient);
     return moment;
   }
 
@@ -529,8 +613,7 @@ namespace impm
           link.obstacle != nullptr && !link.obstacle->free_body)
         work -= 0.5 * link.area *
                 (states[l].gradient * states[l].carried +
-                 state_at(l, Tensor<1, dim>()).gradient *
-                   motions[link.pair].increment(link.place));
+                 starts[l].gradient * motions[link.pair].increment(link.place));
     return work;
   }
 

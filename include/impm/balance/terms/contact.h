@@ -33,6 +33,12 @@ namespace impm
    * renew_friction() takes it from the pressures that came out, until they
    * agree. What is beyond the bound is dissipated.
    *
+   * Over a step, time integrators take a mean of the forces at both ends. Where
+   * surfaces part within it, that at the start acts for the part of the way on
+   * which they touch: all the way it would do more work than the layer has
+   * stored. By the trapezoidal rule that at the end does so, too, where they
+   * meet, and contact keeps energy however long steps are; others damp there.
+   *
    * Normals of obstacles are those where points come to; of other bodies, those
    * at the start of the step. Friction acts along the surface at the start, on
    * an obstacle that turns where the last solution has brought the point: that
@@ -42,14 +48,21 @@ namespace impm
   class Contact : public Term
   {
   public:
-    /** With the free bodies of the scene, or null. Collective. */
-    Contact(ContactLinks<dim> links, FreeBodies<dim> *free, MPI_Comm comm);
+    /** With the free bodies of the scene, or null, and the weight of the forces
+     * at the end of the step. Collective. */
+    Contact(ContactLinks<dim> links,
+            FreeBodies<dim>  *free,
+            double            weight,
+            MPI_Comm          comm);
 
     bool
     evaluate(const Vector &u, bool with_tangent) override;
 
     void
     add_force(const Vector &u, Vector &force) const override;
+
+    void
+    add_end_force(const Vector &u, Vector &force) const override;
 
     void
     add_start_force(Vector &force) const override;
@@ -129,14 +142,19 @@ namespace impm
     /** Of a link, at an increment. Directions are those of space. */
     struct State
     {
-      dealii::Point<dim>     place;      ///< (m)
-      dealii::Tensor<1, dim> carried;    ///< way of the obstacle there (m)
-      double                 energy = 0; ///< per area (J/m^2)
-      dealii::Tensor<1, dim> gradient;   ///< on the partner (Pa)
+      dealii::Point<dim>     place;   ///< (m)
+      dealii::Tensor<1, dim> carried; ///< way of the obstacle there (m)
+      /** Per area (J/m^2): what layers store and friction takes, and of what
+       * the gradient is the derivative. */
+      double energy = 0, potential = 0;
+      /** On the partner (Pa): what the balance is given for the end of the
+       * step, and what is there. */
+      dealii::Tensor<1, dim> gradient, end_gradient;
       /** Derivative of the gradient but for the curvature of obstacles, and
        * what that adds (Pa/m). */
       dealii::SymmetricTensor<2, dim> tangent, curved;
-      double                          pressure = 0; ///< (Pa)
+      double                          pressure = 0; ///< at the end (Pa)
+      double                          given    = 0; ///< to the balance (Pa)
       double                          friction = 0; ///< along it (Pa)
       double                          gap      = 0; ///< (m)
       /** Of the layer, before what is beyond the bound has slipped (m). */
@@ -175,8 +193,11 @@ namespace impm
     dealii::Tensor<1, dim>
     increment_of(const ContactLink<dim> &link, const Vector &u) const;
 
-    std::vector<State>  states;
-    std::vector<double> bounds; ///< of friction (Pa)
+    const double       weight; ///< of forces at the end of the step
+    std::vector<State> states;
+    std::vector<State> starts; ///< of the step
+    /** Of friction (Pa); below zero, so much of that at the start is let go. */
+    std::vector<double> bounds;
     /** Across which it acts, as an obstacle is at the start of the step. */
     std::vector<dealii::Tensor<1, dim>> normals;
     std::vector<RigidMotion<dim>>       motions; ///< of obstacles, by pair

@@ -42,8 +42,8 @@ namespace impm
       return t * t * sum;
     }
 
-    /** What the balance takes for that where it gives a weight to it and the
-     * rest to the pressure at the start: see Contact. */
+    /** What the balance takes for that where bodies meet or part and the time
+     * integrator gives a weight to it: see Contact. */
     Layer
     layer_over(const double k,
                const double start,
@@ -96,7 +96,9 @@ namespace impm
         curvature            = proximity.curvature;
       }
     const auto at_end  = layer_at(k, state.gap);
-    const auto given   = layer_over(k, link.gap, state.gap, weight);
+    const auto given   = is_passing[link.pair] ?
+                           layer_over(k, link.gap, state.gap, weight) :
+                           at_end;
     state.pressure     = at_end.pressure;
     state.given        = given.pressure;
     state.energy       = at_end.potential;
@@ -205,8 +207,11 @@ namespace impm
         bounds.push_back(link.friction_bound);
         normals.push_back(link.normal);
       }
+    is_passing.resize(all.obstacles.size());
     for (unsigned int l = 0; l < all.links.size(); ++l)
       starts[l] = state_at(l, Tensor<1, dim>());
+    is_passing = touches(starts);
+    is_passing.flip();
     motions.resize(all.obstacles.size());
     if (free != nullptr)
       {
@@ -505,9 +510,28 @@ namespace impm
   }
 
   template <int dim>
-  bool
-  Contact<dim>::renew_friction(const MPI_Comm communicator)
+  std::vector<bool>
+  Contact<dim>::touches(const std::vector<State> &some) const
   {
+    std::vector<unsigned int> n(all.obstacles.size());
+    for (unsigned int l = 0; l < some.size(); ++l)
+      n[all.links[l].pair] += some[l].pressure > 0;
+    Utilities::MPI::sum(n, communicator, n);
+    return {n.begin(), n.end()};
+  }
+
+  template <int dim>
+  bool
+  Contact<dim>::renew()
+  {
+    bool part = false;
+    if (weight < 1)
+      {
+        const auto touch = touches(states);
+        for (unsigned int q = 0; q < touch.size(); ++q)
+          if (!is_passing[q] && !touch[q])
+            is_passing[q] = part = true;
+      }
     double sums[] = {0, 0}; // of changes, of all
     for (unsigned int l = 0; l < states.size(); ++l)
       {
@@ -530,7 +554,7 @@ namespace impm
         normals[l] = normal;
       }
     Utilities::MPI::sum(sums, communicator, sums);
-    return sums[0] > tolerance * sums[1];
+    return part || sums[0] > tolerance * sums[1];
   }
 
   template <int dim>

@@ -30,14 +30,15 @@ namespace impm
    * Coulomb's friction resists slip like a layer of a third of that stiffness,
    * up to the coefficient times the pressure. In a step it derives from an
    * energy, too, since that bound is fixed while the step is solved:
-   * renew_friction() takes it from the pressures that came out, until they
+   * renew() takes it from the pressures that came out, until they
    * agree. What is beyond the bound is dissipated.
    *
    * Over a step, time integrators take a mean of the forces at both ends. Where
-   * surfaces part within it, that at the start acts for the part of the way on
-   * which they touch: all the way it would do more work than the layer has
-   * stored. By the trapezoidal rule that at the end does so, too, where they
-   * meet, and contact keeps energy however long steps are; others damp there.
+   * bodies part within it, so that nothing of a pair touches at its end, that
+   * at the start acts for the part of the way on which surfaces do: all the way
+   * it would do more work than the layer has stored. By the trapezoidal rule
+   * that at the end does so, too, where they meet, and impacts keep energy
+   * however long steps are; others damp there.
    *
    * Normals of obstacles are those where points come to; of other bodies, those
    * at the start of the step. Friction acts along the surface at the start, on
@@ -86,11 +87,12 @@ namespace impm
     void
     add_correction(const Vector &like, LowRank &correction) const override;
 
-    /** Takes the bounds of friction, and on what turns its directions, from
-     * the state; returns whether they have changed so much that the step is to
-     * be solved anew. Collective. */
+    /** Takes from the state what is fixed while the step is solved: bounds of
+     * friction, on what turns its directions, and which bodies part. Returns
+     * whether so much has changed that the step is to be solved anew.
+     * Collective. */
     bool
-    renew_friction(MPI_Comm communicator);
+    renew();
 
     /** Sum of what presses, without regard to direction (N), in the state.
      * Collective. */
@@ -170,6 +172,10 @@ namespace impm
     state_after(unsigned int                  link,
                 const dealii::Tensor<1, dim> &increment) const;
 
+    /** Which pairs press somewhere. Collective. */
+    std::vector<bool>
+    touches(const std::vector<State> &some) const;
+
     /** What contact does on the free bodies as they are. Collective. */
     std::vector<typename FreeBodies<dim>::Load>
     loads_on_free_bodies() const;
@@ -198,6 +204,8 @@ namespace impm
     std::vector<State> starts; ///< of the step
     /** Of friction (Pa); below zero, so much of that at the start is let go. */
     std::vector<double> bounds;
+    /** Of a pair: whether its bodies meet in the step, or part. */
+    std::vector<bool> is_passing;
     /** Across which it acts, as an obstacle is at the start of the step. */
     std::vector<dealii::Tensor<1, dim>> normals;
     std::vector<RigidMotion<dim>>       motions; ///< of obstacles, by pair

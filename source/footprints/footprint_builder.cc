@@ -274,7 +274,6 @@ namespace impm
           continue;
         auto        cell      = discretization.with_dofs(place_cell);
         const auto &stiffness = populated.stiffness[*layer];
-        const auto &is_filled = populated.holds_points[*layer];
         const auto  square_to = [&x = x](const auto &other) {
           double square = 0;
           for (unsigned int d = 0; d < dim; ++d)
@@ -286,24 +285,17 @@ namespace impm
             }
           return square;
         };
-        if (is_filled[cell->active_cell_index()] == 0 || square_to(cell) > 0)
+        if (stiffness[cell->active_cell_index()] == 0 || square_to(cell) > 0)
           {
             find_surroundings(cell, discretization, around);
-            // Nodes which edges of boxes alone reach give way to any force.
-            for (const auto *material : {&is_filled, &stiffness})
-              {
-                double nearest = std::numeric_limits<double>::max();
-                for (const auto &other : around.cells)
-                  if ((*material)[other->active_cell_index()] > 0)
-                    if (const double square = square_to(other);
-                        square < nearest)
-                      {
-                        nearest = square;
-                        cell    = discretization.with_dofs(other);
-                      }
-                if (nearest < std::numeric_limits<double>::max())
-                  break;
-              }
+            double nearest = std::numeric_limits<double>::max();
+            for (const auto &other : around.cells)
+              if (stiffness[other->active_cell_index()] > 0)
+                if (const double square = square_to(other); square < nearest)
+                  {
+                    nearest = square;
+                    cell    = discretization.with_dofs(other);
+                  }
           }
         Point<dim> unit;
         for (unsigned int d = 0; d < dim; ++d)

@@ -28,16 +28,8 @@ namespace impm
         if (cell.cell->is_locally_owned())
           cells.push_back({cell.cell, layer, cell.nodes});
       }
-    holds_points.assign(n_layers,
-                        std::vector<double>(triangulation.n_active_cells()));
-    unsigned int p = 0;
-    for (const auto &particle : points.sorted.particles)
-      holds_points[points.layer(p++)]
-                  [particle.get_surrounding_cell()->active_cell_index()] = 1;
     if (Utilities::MPI::n_mpi_processes(discretization.communicator) == 1)
       return;
-    for (auto &of_layer : holds_points)
-      exchange_cell_data(discretization, of_layer);
 
     // A point near the border of a rank touches cells of its neighbour. The
     // largest compliance survives the exchange, and zero means empty.

@@ -33,10 +33,6 @@ namespace impm
      * index; 0 where there is no material (Pa).
      */
     std::vector<std::vector<double>> stiffness;
-
-    /** Likewise 1 where the middle of a point lies, not only an edge of its
-     * box; else 0. */
-    std::vector<std::vector<double>> holds_points;
   };
 
   /** Fills the ghost cells of data by active cell index. Collective. */

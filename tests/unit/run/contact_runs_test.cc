@@ -425,45 +425,6 @@ TEST(ContactRuns, TwoRodsExchangeTheirVelocities)
 }
 
 
-// The points end where a cell does, and move a little into the next one, in
-// which the surface lies: what hangs on its nodes alone gives way without end.
-TEST(ContactRuns, ASurfaceAheadOfItsPoints)
-{
-  const auto columns =
-    run_scene<3>("3D",
-                 Overrides{"Geometry/Shapes=box, ground",
-                           "Geometry/box/Lower corner=0, 0.475, 0",
-                           "Geometry/box/Upper corner=0.25, 1, 0.25",
-                           "Geometry/ground/Lower corner=-1, -1, -1",
-                           "Geometry/ground/Upper corner=2, 0.475, 2",
-                           "Grid/Method=GIMP",
-                           "Grid/Upper corner=0.25, 1, 0.25",
-                           "Grid/Cells=2, 8, 2",
-                           "Bodies/block/Points per cell=2",
-                           "Bodies/Names=block, tool",
-                           "Bodies/tool/Kind=rigid",
-                           "Bodies/tool/Contact=surface",
-                           "Bodies/tool/Shape=ground",
-                           "Bodies/tool/Displacement=0; -5e-5*min(t, 1); 0",
-                           "Contact/Pairs=foot",
-                           "Contact/foot/Bodies=block, tool",
-                           "Contact/foot/Kind=frictionless",
-                           "Boundary conditions/left/Type=slip",
-                           "Boundary conditions/right/Type=slip",
-                           "Boundary conditions/front/Type=slip",
-                           "Boundary conditions/back/Type=slip",
-                           "Boundary conditions/top/Type=normal displacement",
-                           "Boundary conditions/top/Value=-1e-4*min(t, 1)",
-                           "Boundary conditions/top/Moves the grid=true",
-                           "Solver/Newton tolerance=1e-9",
-                           "Time/End time=20"} +
-                   with_inertia);
-  // of the block and its layer; it has the volume of its points
-  const double modulus = 1.3461538, exact = modulus * 5e-5 / (0.525 + 0.0125);
-  EXPECT_NEAR(columns.at("foot_normal_force").back() / (exact / 16), 1, 0.06);
-}
-
-
 // It flies on with twice the velocity of the heavy one, in steps that its waves
 // cross forty times.
 TEST(ContactRuns, ALightRodIsStruck)

@@ -174,6 +174,7 @@ namespace impm
                                                            time,
                                                            dt),
                                          free_bodies.get(),
+                                         integrator.force_factor(),
                                          grid.communicator) :
           nullptr)
     , start_forces(find_start_forces())

@@ -60,9 +60,11 @@ namespace impm
          << " % of the largest energy by itself: the time integrator does so "
             "where bodies turn far in a step; the energy-momentum method does "
             "not"
-         << (problem->contact ? ". So do surfaces that part within a step: "
-                                "backward Euler (theta = 1) does not" :
-                                "");
+         << (problem->contact ?
+               ". So do surfaces that part within a step while "
+               "others of the bodies do not: backward Euler "
+               "(theta = 1) does not" :
+               "");
     return text.str();
   }
 

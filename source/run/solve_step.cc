@@ -40,9 +40,8 @@ namespace impm
           result.append(solve());
         // Friction has an energy only where the pressure is known.
         const unsigned int most = 50;
-        for (unsigned int i = 0; problem.contact && result.converged &&
-                                 problem.contact->renew_friction(
-                                   problem.discretization->communicator);
+        for (unsigned int i = 0;
+             problem.contact && result.converged && problem.contact->renew();
              ++i)
           {
             if (i < most)

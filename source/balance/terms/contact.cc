@@ -14,6 +14,58 @@ namespace impm
 
     /** Bounds of friction agree when they differ by no more, in the mean. */
     constexpr double tolerance = 1e-3;
+
+    /** What a layer does at the end of a step. */
+    struct Layer
+    {
+      double pressure;  ///< (Pa)
+      double stiffness; ///< (Pa/m)
+      double potential; ///< (J/m^2)
+    };
+
+    Layer
+    layer_at(const double k, const double gap)
+    {
+      const double closed = std::max(0., -gap);
+      return {k * closed, closed > 0 ? k : 0., 0.5 * k * closed * closed};
+    }
+
+    /** t - log(1 + t) */
+    double
+    less_logarithm(const double t)
+    {
+      if (t > 1e-2)
+        return t - std::log1p(t);
+      double sum = 0;
+      for (unsigned int n = 9; n > 1; --n)
+        sum = 1. / n - t * sum;
+      return t * t * sum;
+    }
+
+    /** What the balance takes for that where bodies meet or part and the time
+     * integrator gives a weight to it: see Contact. */
+    Layer
+    layer_over(const double k,
+               const double start,
+               const double end,
+               const double weight)
+    {
+      const bool   part = start < 0 && end > 0, meet = start > 0 && end < 0;
+      const double t     = part || meet ? -end / start : 0.;
+      const double apart = 1 / (1 + t);
+      if (part && weight < 1)
+        {
+          const double let_go = (1 - weight) / weight * k;
+          return {let_go * start * t * apart,
+                  let_go * apart * apart,
+                  let_go * start * start * less_logarithm(t)};
+        }
+      if (meet && weight == 0.5)
+        return {-k * end * t * apart,
+                k * (1 - apart * apart),
+                k * start * start * (0.5 * t * t - less_logarithm(t))};
+      return layer_at(k, end);
+    }
   } // namespace
 
   template <int dim>
@@ -53,10 +105,10 @@ namespace impm
     state.slip = link.slip + way;
     if (link.is_bond)
       {
-        state.energy   = 0.5 * k * state.slip.norm_square();
-        state.gradient = k * state.slip;
-        state.tangent  = k * unit_symmetric_tensor<dim>();
-        state.pressure = -state.gradient * link.normal;
+        state.energy = state.potential = 0.5 * k * state.slip.norm_square();
+        state.gradient = state.end_gradient = k * state.slip;
+        state.tangent                       = k * unit_symmetric_tensor<dim>();
+        state.pressure                      = -state.gradient * link.normal;
         state.friction = (state.gradient + state.pressure * link.normal).norm();
         return state;
       }
@@ -70,25 +122,45 @@ namespace impm
         n                    = proximity.normal;
         curvature            = proximity.curvature;
       }
-    if (const double closed = -state.gap; closed > 0)
-      {
-        state.pressure = k * closed;
-        state.energy   = 0.5 * k * closed * closed;
-        state.gradient = -state.pressure * n;
-        state.tangent  = k * symmetrize(outer_product(n, n));
-        state.curved   = -state.pressure * curvature;
-      }
+    const auto at_end  = layer_at(k, state.gap);
+    const auto given   = is_passing[link.pair] ?
+                           layer_over(k, link.gap, state.gap, weight) :
+                           at_end;
+    state.pressure     = at_end.pressure;
+    state.given        = given.pressure;
+    state.energy       = at_end.potential;
+    state.potential    = given.potential;
+    state.end_gradient = -at_end.pressure * n;
+    state.tangent      = given.stiffness * symmetrize(outer_product(n, n));
+    state.curved       = -given.pressure * curvature;
 
     state.slip -= (state.slip * normals[l]) * normals[l];
+    Tensor<1, dim> along_it;
     if (bounds[l] > 0)
       {
         state.shear          = friction_at(l, state.slip);
         state.friction       = state.shear.force.norm();
         const double sheared = state.friction / (friction_stiffness * k);
-        state.energy += state.friction * (state.slip.norm() - 0.5 * sheared);
-        state.gradient += state.shear.force;
+        const double energy =
+          state.friction * (state.slip.norm() - 0.5 * sheared);
+        along_it = state.shear.force;
         state.tangent += state.shear.tangent;
+        state.energy += energy;
+        state.potential += energy;
+        state.end_gradient += along_it;
       }
+    const auto &start          = starts[l];
+    const auto  start_friction = start.gradient + start.pressure * link.normal;
+    if (bounds[l] < 0)
+      {
+        along_it =
+          bounds[l] / (link.friction * start.pressure) * start_friction;
+        state.potential += along_it * way;
+      }
+    if (weight < 1)
+      state.energy = at_end.potential +
+                     (weight * along_it + (1 - weight) * start_friction) * way;
+    state.gradient = along_it - given.pressure * n;
     return state;
   }
 
@@ -111,10 +183,11 @@ namespace impm
         const auto turn = [&](const SymmetricTensor<2, dim> &tangent) {
           return symmetrize(R * Tensor<2, dim>(tangent) * transpose(R));
         };
-        state.gradient = R * state.gradient;
-        state.tangent  = turn(state.tangent);
-        state.curved   = turn(state.curved);
-        state.slip     = R * state.slip;
+        state.gradient     = R * state.gradient;
+        state.end_gradient = R * state.end_gradient;
+        state.tangent      = turn(state.tangent);
+        state.curved       = turn(state.curved);
+        state.slip         = R * state.slip;
       }
     return state;
   }
@@ -134,9 +207,12 @@ namespace impm
   template <int dim>
   Contact<dim>::Contact(ContactLinks<dim>      links,
                         FreeBodies<dim> *const free,
+                        const double           weight,
                         const MPI_Comm         comm)
     : all(std::move(links))
+    , weight(weight)
     , states(all.links.size())
+    , starts(all.links.size())
     , free(free)
     , communicator(comm)
   {
@@ -145,6 +221,11 @@ namespace impm
         bounds.push_back(link.friction_bound);
         normals.push_back(link.normal);
       }
+    is_passing.resize(all.obstacles.size());
+    for (unsigned int l = 0; l < all.links.size(); ++l)
+      starts[l] = state_at(l, Tensor<1, dim>());
+    is_passing = touches(starts);
+    is_passing.flip();
     motions.resize(all.obstacles.size());
     if (free != nullptr)
       {
@@ -342,10 +423,18 @@ namespace impm
 
   template <int dim>
   void
+  Contact<dim>::add_end_force(const Vector & /*u*/, Vector &force) const
+  {
+    for (unsigned int l = 0; l < states.size(); ++l)
+      add(l, states[l].end_gradient, force);
+  }
+
+  template <int dim>
+  void
   Contact<dim>::add_start_force(Vector &force) const
   {
     for (unsigned int l = 0; l < states.size(); ++l)
-      add(l, state_at(l, Tensor<1, dim>()).gradient, force);
+      add(l, starts[l].gradient, force);
   }
 
   template <int dim>
@@ -354,7 +443,7 @@ namespace impm
   {
     double sum = 0;
     for (unsigned int l = 0; l < states.size(); ++l)
-      sum += all.links[l].area * states[l].energy;
+      sum += all.links[l].area * states[l].potential;
     if (free != nullptr && Utilities::MPI::this_mpi_process(communicator) == 0)
       sum += free->potential();
     return sum;
@@ -444,19 +533,38 @@ namespace impm
   }
 
   template <int dim>
-  bool
-  Contact<dim>::renew_friction(const MPI_Comm communicator)
+  std::vector<bool>
+  Contact<dim>::touches(const std::vector<State> &some) const
   {
+    std::vector<unsigned int> n(all.obstacles.size());
+    for (unsigned int l = 0; l < some.size(); ++l)
+      n[all.links[l].pair] += some[l].pressure > 0;
+    Utilities::MPI::sum(n, communicator, n);
+    return {n.begin(), n.end()};
+  }
+
+  template <int dim>
+  bool
+  Contact<dim>::renew()
+  {
+    bool part = false;
+    if (weight < 1)
+      {
+        const auto touch = touches(states);
+        for (unsigned int q = 0; q < touch.size(); ++q)
+          if (!is_passing[q] && !touch[q])
+            is_passing[q] = part = true;
+      }
     double sums[] = {0, 0}; // of changes, of all
     for (unsigned int l = 0; l < states.size(); ++l)
       {
         const auto  &link = all.links[l];
         const double bound =
-          link.is_bond ? 0. : link.friction * states[l].pressure;
+          link.is_bond ? 0. : link.friction * states[l].given;
         sums[0] += link.area * std::abs(bound - bounds[l]);
-        sums[1] += link.area * bound;
+        sums[1] += link.area * std::abs(bound);
         bounds[l] = bound;
-        if (bound == 0 || link.obstacle == nullptr ||
+        if (bound <= 0 || link.obstacle == nullptr ||
             !motions[link.pair].turns())
           continue;
         const auto &state = states[l];
@@ -469,7 +577,7 @@ namespace impm
         normals[l] = normal;
       }
     Utilities::MPI::sum(sums, communicator, sums);
-    return sums[0] > tolerance * sums[1];
+    return part || sums[0] > tolerance * sums[1];
   }
 
   template <int dim>
@@ -478,7 +586,7 @@ namespace impm
   {
     double sum = 0;
     for (unsigned int l = 0; l < states.size(); ++l)
-      sum += all.links[l].area * states[l].gradient.norm();
+      sum += all.links[l].area * states[l].end_gradient.norm();
     return Utilities::MPI::sum(sum, communicator);
   }
 
@@ -500,7 +608,7 @@ namespace impm
     Tensor<1, dim> force;
     for (unsigned int l = 0; l < states.size(); ++l)
       if (all.links[l].pair == pair)
-        force += all.links[l].area * states[l].gradient;
+        force += all.links[l].area * states[l].end_gradient;
     return force;
   }
 
@@ -512,8 +620,8 @@ namespace impm
     RotationVector moment;
     for (unsigned int l = 0; l < states.size(); ++l)
       if (all.links[l].pair == pair)
-        moment += all.links[l].area *
-                  moment_of<dim>(states[l].place - about, states[l].gradient);
+        moment += all.links[l].area * moment_of<dim>(states[l].place - about,
+                                                     states[l].end_gradient);
     return moment;
   }
 
@@ -552,8 +660,7 @@ namespace impm
           link.obstacle != nullptr && !link.obstacle->free_body)
         work -= 0.5 * link.area *
                 (states[l].gradient * states[l].carried +
-                 state_at(l, Tensor<1, dim>()).gradient *
-                   motions[link.pair].increment(link.place));
+                 starts[l].gradient * motions[link.pair].increment(link.place));
     return work;
   }
 

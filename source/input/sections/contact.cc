@@ -204,6 +204,42 @@ namespace impm
           }
     }
 
+    /** Bodies that are glued to each other by saying nothing, with another one
+     * in between. `glued` are those of which the scene says so. */
+    template <int dim>
+    void
+    check_glue(const std::vector<ContactPair> &pairs,
+               const std::vector<ContactPair> &glued,
+               const Bodies<dim>              &bodies,
+               std::vector<std::string>       &warnings)
+    {
+      const auto are_in =
+        [](const auto &list, const unsigned int a, const unsigned int b) {
+          return std::any_of(list.begin(), list.end(), [&](const auto &pair) {
+            return pair.partner_kind != PartnerKind::face &&
+                   std::minmax(a, b) == std::minmax(pair.body, pair.partner);
+          });
+        };
+      const auto are_apart = [&](const auto &a, const auto &b) {
+        return a.shape && b.shape && a.shape->bounding_box &&
+               b.shape->bounding_box &&
+               a.shape->bounding_box->get_neighbor_type(
+                 *b.shape->bounding_box) == dealii::NeighborType::not_neighbors;
+      };
+      for (unsigned int a = 0; a < bodies.size(); ++a)
+        for (unsigned int b = a + 1; b < bodies.size(); ++b)
+          for (unsigned int c = 0; c < bodies.size(); ++c)
+            if (!bodies[a].rigid && !bodies[b].rigid && are_in(pairs, a, c) &&
+                are_in(pairs, b, c) && !are_in(pairs, a, b) &&
+                !are_in(glued, a, b) && are_apart(bodies[a], bodies[b]))
+              warnings.push_back(
+                "no pair of the section Contact names '" + bodies[a].name +
+                "' and '" + bodies[b].name + "', which both meet '" +
+                bodies[c].name +
+                "': they are glued to each other as soon as both come to one "
+                "cell, be it between them");
+    }
+
     /** What rigid bodies pass through. */
     template <int dim>
     void
@@ -271,6 +307,7 @@ namespace impm
       "Of the layer of bodies, in cells, that gives way where surfaces "
       "press on each other. It is as stiff as the softer of both "
       "bodies.");
+    std::vector<ContactPair> glued;
     for (const auto &name : names)
       {
         ContactPair pair;
@@ -284,8 +321,7 @@ namespace impm
             section.subsection(name).refuse("Bodies",
                                             "which make the pair '" +
                                               other.name + "' already");
-        if (!is_glued)
-          contact.pairs.push_back(pair);
+        (is_glued ? glued : contact.pairs).push_back(pair);
       }
     if (!section.is_read)
       {
@@ -295,6 +331,7 @@ namespace impm
     choose_layers(section, contact.pairs, bodies, grid);
     let_go(section, contact.pairs, bodies, faces);
     check_rigid_bodies(section, contact.pairs, bodies, warnings);
+    check_glue(contact.pairs, glued, bodies, warnings);
   }
 
   template void

@@ -425,6 +425,48 @@ TEST(ContactRuns, TwoRodsExchangeTheirVelocities)
 }
 
 
+// It flies on with twice the velocity of the heavy one, in steps that its waves
+// cross forty times.
+TEST(ContactRuns, ALightRodIsStruck)
+{
+  for (const std::string integrator : {"Newmark", "energy-momentum"})
+    {
+      const auto columns =
+        run_scene<2>("plane strain",
+                     rods + Overrides{"Materials/Names=rubber, foam",
+                                      "Materials/foam/Law=neo-Hookean",
+                                      "Materials/foam/Density=1e-6",
+                                      "Materials/foam/Young's modulus=1",
+                                      "Materials/foam/Poisson's ratio=0",
+                                      "Bodies/second/Material=foam",
+                                      "Time/Integrator=" + integrator,
+                                      "Time/End time=1"});
+      EXPECT_NEAR(columns.at("a").back(), 0.01, 1e-6);
+      EXPECT_NEAR(columns.at("b").back(), 0.02, 0.02 * 0.02);
+    }
+}
+
+
+// Steps are longer than it takes to fall back.
+TEST(ContactRuns, AStiffBlockThatFallsKeepsItsEnergy)
+{
+  for (const std::string integrator : {"Newmark", "energy-momentum"})
+    {
+      const auto columns =
+        run_scene<2>("plane strain",
+                     incline<2>("0.1", "1e8") +
+                       Overrides{"Geometry/box/Lower corner=0.5, 0.3",
+                                 "Geometry/box/Upper corner=1.5, 0.8",
+                                 "Time/Time step=0.05",
+                                 "Time/Integrator=" + integrator});
+      const double fastest = std::sqrt(2 * g * std::cos(angle) * 0.05);
+      for (const double momentum : columns.at("momentum_y"))
+        EXPECT_LT(std::abs(momentum), 1.001 * mass * fastest);
+      EXPECT_LT(columns.at("energy_gain").back(), 0);
+    }
+}
+
+
 namespace
 {
   /** A block lies on a drum that turns under it, between smooth walls. */

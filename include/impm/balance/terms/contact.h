@@ -30,7 +30,7 @@ namespace impm
    * Coulomb's friction resists slip like a layer of a third of that stiffness,
    * up to the coefficient times the pressure. In a step it derives from an
    * energy, too, since that bound is fixed while the step is solved:
-   * renew_friction() takes it from the pressures that came out, until they
+   * renew() takes it from the pressures that came out, until they
    * agree. What is beyond the bound is dissipated. The tangent of what slips
    * is nothing along the slip, for one side of a kink: where Newton's method
    * takes it for the other, it would not settle. So the force there is taken
@@ -38,6 +38,13 @@ namespace impm
    * Golub & Mulet, SIAM J. Sci. Comput. 20, 1999): while the force of the last
    * tangent, carried on by that, is not yet what the slip makes it, the tangent
    * is stiffer; in the end it is exact.
+   *
+   * Over a step, time integrators take a mean of the forces at both ends. Where
+   * bodies part within it, so that nothing of a pair touches at its end, that
+   * at the start acts for the part of the way on which surfaces do: all the way
+   * it would do more work than the layer has stored. By the trapezoidal rule
+   * that at the end does so, too, where they meet, and impacts keep energy
+   * however long steps are; others damp there.
    *
    * Normals of obstacles are those where points come to; of other bodies, those
    * at the start of the step. Friction acts along the surface at the start, on
@@ -48,14 +55,21 @@ namespace impm
   class Contact : public Term
   {
   public:
-    /** With the free bodies of the scene, or null. Collective. */
-    Contact(ContactLinks<dim> links, FreeBodies<dim> *free, MPI_Comm comm);
+    /** With the free bodies of the scene, or null, and the weight of the forces
+     * at the end of the step. Collective. */
+    Contact(ContactLinks<dim> links,
+            FreeBodies<dim>  *free,
+            double            weight,
+            MPI_Comm          comm);
 
     bool
     evaluate(const Vector &u, bool with_tangent) override;
 
     void
     add_force(const Vector &u, Vector &force) const override;
+
+    void
+    add_end_force(const Vector &u, Vector &force) const override;
 
     void
     add_start_force(Vector &force) const override;
@@ -82,11 +96,12 @@ namespace impm
     void
     add_correction(const Vector &like, LowRank &correction) const override;
 
-    /** Takes the bounds of friction, and on what turns its directions, from
-     * the state; returns whether they have changed so much that the step is to
-     * be solved anew. Collective. */
+    /** Takes from the state what is fixed while the step is solved: bounds of
+     * friction, on what turns its directions, and which bodies part. Returns
+     * whether so much has changed that the step is to be solved anew.
+     * Collective. */
     bool
-    renew_friction(MPI_Comm communicator);
+    renew();
 
     /** Sum of what presses, without regard to direction (N), in the state.
      * Collective. */
@@ -147,14 +162,19 @@ namespace impm
     /** Of a link, at an increment. Directions are those of space. */
     struct State
     {
-      dealii::Point<dim>     place;      ///< (m)
-      dealii::Tensor<1, dim> carried;    ///< way of the obstacle there (m)
-      double                 energy = 0; ///< per area (J/m^2)
-      dealii::Tensor<1, dim> gradient;   ///< on the partner (Pa)
+      dealii::Point<dim>     place;   ///< (m)
+      dealii::Tensor<1, dim> carried; ///< way of the obstacle there (m)
+      /** Per area (J/m^2): what layers store and friction takes, and of what
+       * the gradient is the derivative. */
+      double energy = 0, potential = 0;
+      /** On the partner (Pa): what the balance is given for the end of the
+       * step, and what is there. */
+      dealii::Tensor<1, dim> gradient, end_gradient;
       /** Derivative of the gradient but for the curvature of obstacles, and
        * what that adds (Pa/m). */
       dealii::SymmetricTensor<2, dim> tangent, curved;
-      double                          pressure = 0; ///< (Pa)
+      double                          pressure = 0; ///< at the end (Pa)
+      double                          given    = 0; ///< to the balance (Pa)
       double                          friction = 0; ///< along it (Pa)
       double                          gap      = 0; ///< (m)
       /** Of the layer, before what is beyond the bound has slipped (m). */
@@ -174,6 +194,10 @@ namespace impm
     State
     state_after(unsigned int                  link,
                 const dealii::Tensor<1, dim> &increment) const;
+
+    /** Which pairs press somewhere. Collective. */
+    std::vector<bool>
+    touches(const std::vector<State> &some) const;
 
     /** What contact does on the free bodies as they are. Collective. */
     std::vector<typename FreeBodies<dim>::Load>
@@ -198,9 +222,15 @@ namespace impm
     dealii::Tensor<1, dim>
     increment_of(const ContactLink<dim> &link, const Vector &u) const;
 
-    std::vector<State>    states;
-    std::vector<Friction> at_tangent; ///< where one was taken, if any was
-    std::vector<double>   bounds;     ///< of friction (Pa)
+    const double       weight; ///< of forces at the end of the step
+    std::vector<State> states;
+    std::vector<State> starts; ///< of the step
+    /** Where a tangent was taken, if any was. */
+    std::vector<Friction> at_tangent;
+    /** Of friction (Pa); below zero, so much of that at the start is let go. */
+    std::vector<double> bounds;
+    /** Of a pair: whether its bodies meet in the step, or part. */
+    std::vector<bool> is_passing;
     /** Across which it acts, as an obstacle is at the start of the step. */
     std::vector<dealii::Tensor<1, dim>> normals;
     std::vector<RigidMotion<dim>>       motions; ///< of obstacles, by pair

@@ -205,9 +205,12 @@ namespace
     return model;
   }
 
+  /** Of bodies that part, after a try that has taken them off each other. */
   template <int dim>
   States
-  check(const std::string &kind, const Overrides &overrides)
+  check(const std::string &kind,
+        const Overrides   &overrides,
+        const bool         part = false)
   {
     std::string all = kind;
     for (const auto &override : overrides)
@@ -219,6 +222,14 @@ namespace
                  s       = model->random_direction(11),
                  w       = model->random_direction(12);
     const States states(*model->problem->contact, u);
+    if (part)
+      {
+        Vector up = model->vector();
+        for (unsigned int i = 1; i < up.locally_owned_size(); i += dim)
+          up.local_element(i) = 10 * size;
+        EXPECT_TRUE(balance.evaluate(up).admissible);
+        EXPECT_TRUE(model->problem->contact->renew());
+      }
 
     const auto at = [&](const double h) {
       Vector x = u;
@@ -376,6 +387,26 @@ TEST(ContactMpi, DerivativesOnAnotherBlock)
    check<2>("axisymmetric", on_block<2>("Coulomb") + coulomb + boxes) +
    check<3>("3D", on_block<3>("Coulomb") + coulomb + refined))
     .expect_all();
+}
+
+
+// Where the force at one end of the step acts for part of the way.
+TEST(ContactMpi, DerivativesWhereBodiesMeetOrPart)
+{
+  const Overrides trapezoidal = {"Time/Integrator=Newmark"},
+                  damped      = {"Time/Integrator=generalised alpha"},
+                  above       = {"Geometry/box/Lower corner=0.25, 0.262"};
+  const std::string plane     = "plane strain";
+  const auto        meet = check<2>(plane, on_box<2>() + above + trapezoidal) +
+                    check<2>(plane, on_box<2>() + above + trapezoidal + boxes);
+  EXPECT_GT(meet.closed, 2u);
+  EXPECT_GT(meet.open, 5u);
+  EXPECT_EQ(meet.sticking + meet.sliding, 0u); // not at the start
+  const auto part = check<2>(plane, on_box<2>() + trapezoidal, true) +
+                    check<2>(plane, on_ball<2>() + damped + boxes, true) +
+                    check<3>("3D", on_box<3>() + trapezoidal + boxes, true);
+  EXPECT_GT(part.closed, 5u);
+  EXPECT_GT(part.open, 5u);
 }
 
 

@@ -80,7 +80,10 @@ namespace impm
     , discretization(grid.discretization())
     , footprints(build_footprints(
         builder, points, grid, *discretization, integrator.has_inertia()))
-    , populated(footprints, points, *discretization)
+    , populated(footprints,
+                points,
+                *discretization,
+                !scene.contact.pairs.empty())
     , norm(integrator.is_explicit() ?
              nullptr :
              std::make_unique<ResidualNorm>(scene.solver.residual_scale,

@@ -10,6 +10,22 @@ namespace impm
 
   namespace
   {
+    /** Part of a cell, less than which is not much material. */
+    constexpr double little = 0.1;
+
+    /** Whether cells share more than a face in a direction. */
+    template <typename Cell>
+    bool
+    overlap(const Cell &one, const Cell &other, const unsigned int d)
+    {
+      const double start          = one->vertex(0)[d],
+                   start_of_other = other->vertex(0)[d];
+      const double common         = std::min(start + cell_extent(one, d),
+                                     start_of_other + cell_extent(other, d)) -
+                            std::max(start, start_of_other);
+      return common > 1e-9 * cell_extent(one, d);
+    }
+
     /** Where a place in a unit cell is in an axis-aligned one (m). */
     template <typename Cell, int dim>
     Point<dim>
@@ -274,28 +290,58 @@ namespace impm
           continue;
         auto        cell      = discretization.with_dofs(place_cell);
         const auto &stiffness = populated.stiffness[*layer];
-        const auto  square_to = [&x = x](const auto &other) {
+        const auto  beyond    = [&x = x](const auto &other, const auto d) {
+          const double from = other->vertex(0)[d] - x[d];
+          return std::max({0., from, -from - cell_extent(other, d)});
+        };
+        const auto square_to = [&](const auto &other) {
           double square = 0;
           for (unsigned int d = 0; d < dim; ++d)
-            {
-              const double from = other->vertex(0)[d] - x[d];
-              const double beyond =
-                std::max({0., from, -from - cell_extent(other, d)});
-              square += beyond * beyond;
-            }
+            square += beyond(other, d) * beyond(other, d);
           return square;
+        };
+        const auto go_to_nearest = [&](const auto &is_allowed) {
+          double nearest = std::numeric_limits<double>::max();
+          for (const auto &other : around.cells)
+            if (const auto index = other->active_cell_index();
+                stiffness[index] > 0 && is_allowed(index))
+              if (const double square = square_to(other); square < nearest)
+                {
+                  nearest = square;
+                  cell    = discretization.with_dofs(other);
+                }
         };
         if (stiffness[cell->active_cell_index()] == 0 || square_to(cell) > 0)
           {
             find_surroundings(cell, discretization, around);
-            double nearest = std::numeric_limits<double>::max();
-            for (const auto &other : around.cells)
-              if (stiffness[other->active_cell_index()] > 0)
-                if (const double square = square_to(other); square < nearest)
-                  {
-                    nearest = square;
-                    cell    = discretization.with_dofs(other);
-                  }
+            go_to_nearest([](const unsigned int) { return true; });
+          }
+        else if (!populated.filling.empty())
+          {
+            // Where material lacks, nodes that little of it reaches give way
+            // to what presses there until it does so no more.
+            const auto  &filling = populated.filling[*layer];
+            const double here    = filling[cell->active_cell_index()];
+            if (here < little)
+              {
+                find_surroundings(cell, discretization, around);
+                // If the material of another cell went on as far as the place.
+                const auto expected = [&](const auto &other) {
+                  double part = filling[other->active_cell_index()];
+                  for (unsigned int d = 0; d < dim; ++d)
+                    if (!overlap(place_cell, other, d))
+                      part *= beyond(other, d) / cell_extent(place_cell, d);
+                  return part;
+                };
+                if (std::any_of(around.cells.begin(),
+                                around.cells.end(),
+                                [&](const auto &other) {
+                                  return expected(other) > 10 * here;
+                                }))
+                  go_to_nearest([&](const unsigned int index) {
+                    return filling[index] >= little;
+                  });
+              }
           }
         Point<dim> unit;
         for (unsigned int d = 0; d < dim; ++d)

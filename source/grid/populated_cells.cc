@@ -1,4 +1,5 @@
 #include <impm/grid/populated_cells.h>
+#include <impm/points/point_fields.h>
 
 #include <algorithm>
 #include <limits>
@@ -10,8 +11,11 @@ namespace impm
   template <int dim>
   PopulatedCells<dim>::PopulatedCells(const Footprints<dim>     &footprints,
                                       const MaterialPoints<dim> &points,
-                                      const Discretization<dim> &discretization)
+                                      const Discretization<dim> &discretization,
+                                      const bool                 with_filling)
   {
+    if (with_filling)
+      measure_filling(footprints, points, discretization);
     const auto        &triangulation = discretization.numbering->triangulation;
     const unsigned int n_layers      = discretization.numbering->n_layers;
     stiffness.assign(n_layers,
@@ -57,6 +61,41 @@ namespace impm
                     {cell, layer, discretization.nodes_of(cell, layer)});
                 here = 1 / value;
               }
+      }
+  }
+
+  template <int dim>
+  void
+  PopulatedCells<dim>::measure_filling(
+    const Footprints<dim>     &footprints,
+    const MaterialPoints<dim> &points,
+    const Discretization<dim> &discretization)
+  {
+    std::vector<double> measures;
+    for (const auto &particle : points.sorted.particles)
+      measures.push_back(
+        present_measure(points, measures.size(), particle.get_location()));
+
+    const auto &triangulation = discretization.numbering->triangulation;
+    filling.assign(discretization.numbering->n_layers,
+                   std::vector<double>(triangulation.n_active_cells()));
+    for (unsigned int layer = 0; layer < filling.size(); ++layer)
+      {
+        Vector parts(
+          triangulation.global_active_cell_index_partitioner().lock());
+        for (const auto &cell : footprints.cells)
+          if (discretization.layer(cell.nodes[0]) == layer)
+            for (unsigned int e = cell.begin; e < cell.end; ++e)
+              parts(cell.cell->global_active_cell_index()) +=
+                footprints.weight[e] * measures[footprints.point[e]] /
+                cell.cell->measure();
+        parts.compress(VectorOperation::add);
+        parts.update_ghost_values();
+        for (const auto &cell :
+             discretization.dof_handler().active_cell_iterators())
+          if (!cell->is_artificial())
+            filling[layer][cell->active_cell_index()] =
+              parts(cell->global_active_cell_index());
       }
   }
 

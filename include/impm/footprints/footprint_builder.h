@@ -60,7 +60,9 @@ namespace impm
     /**
      * Of places that touch one cell each: that of those around the given one
      * that is nearest, of those where the layer has material. A place may lie
-     * beyond its faces, as surfaces lie a little outside of all points.
+     * beyond its faces, as surfaces lie a little outside of all points. Where
+     * the filling of cells is known, a cell that lacks material counts for
+     * none.
      */
     Footprints<dim>
     build_at(const std::vector<Place>  &places,

@@ -14,10 +14,11 @@ namespace impm
   class PopulatedCells
   {
   public:
-    /** Collective. */
+    /** Measures what of the cells is filled if asked to. Collective. */
     PopulatedCells(const Footprints<dim>     &footprints,
                    const MaterialPoints<dim> &points,
-                   const Discretization<dim> &discretization);
+                   const Discretization<dim> &discretization,
+                   bool                       with_filling);
 
     struct Cell
     {
@@ -33,6 +34,18 @@ namespace impm
      * index; 0 where there is no material (Pa).
      */
     std::vector<std::vector<double>> stiffness;
+
+    /**
+     * Likewise the part of a cell that is filled by material (-, 1 where it is
+     * full), if it was to be measured.
+     */
+    std::vector<std::vector<double>> filling;
+
+  private:
+    void
+    measure_filling(const Footprints<dim>     &footprints,
+                    const MaterialPoints<dim> &points,
+                    const Discretization<dim> &discretization);
   };
 
   /** Fills the ghost cells of data by active cell index. Collective. */

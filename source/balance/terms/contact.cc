@@ -1,4 +1,5 @@
 #include <impm/balance/terms/contact.h>
+#include <impm/contact/layer.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,58 +15,6 @@ namespace impm
 
     /** Bounds of friction agree when they differ by no more, in the mean. */
     constexpr double tolerance = 1e-3;
-
-    /** What a layer does at the end of a step. */
-    struct Layer
-    {
-      double pressure;  ///< (Pa)
-      double stiffness; ///< (Pa/m)
-      double potential; ///< (J/m^2)
-    };
-
-    Layer
-    layer_at(const double k, const double gap)
-    {
-      const double closed = std::max(0., -gap);
-      return {k * closed, closed > 0 ? k : 0., 0.5 * k * closed * closed};
-    }
-
-    /** t - log(1 + t) */
-    double
-    less_logarithm(const double t)
-    {
-      if (t > 1e-2)
-        return t - std::log1p(t);
-      double sum = 0;
-      for (unsigned int n = 9; n > 1; --n)
-        sum = 1. / n - t * sum;
-      return t * t * sum;
-    }
-
-    /** What the balance takes for that where bodies meet or part and the time
-     * integrator gives a weight to it: see Contact. */
-    Layer
-    layer_over(const double k,
-               const double start,
-               const double end,
-               const double weight)
-    {
-      const bool   part = start < 0 && end > 0, meet = start > 0 && end < 0;
-      const double t     = part || meet ? -end / start : 0.;
-      const double apart = 1 / (1 + t);
-      if (part && weight < 1)
-        {
-          const double let_go = (1 - weight) / weight * k;
-          return {let_go * start * t * apart,
-                  let_go * apart * apart,
-                  let_go * start * start * less_logarithm(t)};
-        }
-      if (meet && weight == 0.5)
-        return {-k * end * t * apart,
-                k * (1 - apart * apart),
-                k * start * start * (0.5 * t * t - less_logarithm(t))};
-      return layer_at(k, end);
-    }
   } // namespace
 
   template <int dim>

@@ -44,7 +44,7 @@ TEST(Layer, TrapezoidalStepsKeepEnergy)
           0.5 * (before.pressure + layer_over(k, start, end, 0.5).pressure);
         EXPECT_NEAR(mean * (start - end),
                     after.potential - before.potential,
-                    1e-16);
+                    1e-15);
       }
 }
 

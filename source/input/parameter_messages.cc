@@ -121,7 +121,7 @@ namespace impm
       const auto &section = parts.front(), &entry = parts.back();
       if (section == "Boundary conditions" && entry == "Type")
         return "velocity";
-      if (entry == "Constants from" || entry == "Limit strain" ||
+      if (entry == "Constants from" || entry == "Hardening" ||
           entry == "Specific heat")
         return "any";
       if (entry == "Point adaptation")

@@ -1,5 +1,7 @@
 #include <deal.II/base/patterns.h>
 
+#include <impm/base/names.h>
+#include <impm/materials/hardening/list.h>
 #include <impm/materials/jaumann_law.h>
 #include <impm/materials/linear_law.h>
 #include <impm/materials/list.h>
@@ -12,32 +14,84 @@ namespace impm
 {
   namespace
   {
+    void
+    declare_density(dealii::ParameterHandler &prm)
+    {
+      prm.declare_entry("Density",
+                        "1000",
+                        dealii::Patterns::Double(1e-300),
+                        "Density before any deformation (kg/m^3), positive.");
+    }
+
     /**
-     * A law and the groups of parameters that its constructor takes: each
-     * declares its entries and reads them back.
+     * A law and the parameters that its constructor takes, which declare their
+     * entries and read them back.
      */
-    template <typename Law, typename Elasticity, typename... Others>
+    template <typename Law, typename Parameters>
     MaterialEntry
-    law(const std::string &name, const bool locks = false)
+    law(const std::string &name)
     {
       return {name,
               [](dealii::ParameterHandler    &prm,
                  const ParameterFile::Chosen &chosen) {
-                Elasticity::declare_parameters(prm, chosen);
-                prm.declare_entry("Density",
-                                  "1000",
-                                  dealii::Patterns::Double(1e-300),
-                                  "Density before any deformation (kg/m^3), "
-                                  "positive.");
-                (Others::declare_parameters(prm, chosen), ...);
+                Parameters::declare_parameters(prm, chosen);
+                declare_density(prm);
               },
               [](dealii::ParameterHandler &prm,
                  const MaterialSpec       &spec,
                  PointLayout              &history) {
                 return std::make_unique<Law>(spec,
                                              history,
-                                             Elasticity::from_parameters(prm),
-                                             Others::from_parameters(prm)...);
+                                             Parameters::from_parameters(prm));
+              }};
+    }
+
+    /** The name of the hardening and the entries of that one alone. */
+    void
+    declare_hardening(dealii::ParameterHandler    &prm,
+                      const ParameterFile::Chosen &chosen)
+    {
+      std::vector<std::string> names;
+      Hardenings::for_each(
+        [&](const auto type) { names.push_back(decltype(type)::type::name); });
+      prm.declare_entry("Hardening",
+                        names.front(),
+                        dealii::Patterns::Selection(join(names, "|")),
+                        "How the yield stress changes.");
+      const std::string name = chosen("Hardening", names.front());
+      Hardenings::for_each([&](const auto type) {
+        using Hardening = typename decltype(type)::type;
+        if (name == Hardening::name || name == "any")
+          Hardening::Parameters::declare_parameters(prm, chosen);
+      });
+    }
+
+    /** A law with a yield stress, one for each hardening. */
+    template <template <typename> class Law>
+    MaterialEntry
+    law_that_yields(const std::string &name, const bool locks = false)
+    {
+      return {name,
+              [](dealii::ParameterHandler    &prm,
+                 const ParameterFile::Chosen &chosen) {
+                ElasticConstants::declare_parameters(prm, chosen);
+                declare_density(prm);
+                declare_hardening(prm, chosen);
+              },
+              [](dealii::ParameterHandler &prm,
+                 const MaterialSpec       &spec,
+                 PointLayout              &history) {
+                std::unique_ptr<const Material> material;
+                Hardenings::for_each([&](const auto type) {
+                  using Hardening = typename decltype(type)::type;
+                  if (prm.get("Hardening") == Hardening::name)
+                    material = std::make_unique<Law<Hardening>>(
+                      spec,
+                      history,
+                      ElasticConstants::from_parameters(prm),
+                      Hardening::Parameters::from_parameters(prm));
+                });
+                return material;
               },
               locks};
     }
@@ -48,14 +102,13 @@ namespace impm
   {
     static const std::vector<MaterialEntry> list = {
       law<LogStrainElastic, ElasticConstants>("log-strain elastic"),
-      law<LogStrainVonMises, ElasticConstants, SaturatingHardening>(
-        "log-strain von Mises", true),
+      law_that_yields<LogStrainVonMises>("log-strain von Mises", true),
       law<NeoHookean<false>, ElasticConstants>("neo-Hookean"),
       law<NeoHookean<true>, ElasticPair>("decoupled neo-Hookean"),
-      law<LinearLaw, ElasticConstants>("linear elastic"),
-      law<LinearLaw, ElasticConstants, BilinearHardening>("linear von Mises"),
-      law<JaumannLaw, ElasticConstants>("Jaumann elastic"),
-      law<JaumannLaw, ElasticConstants, BilinearHardening>("Jaumann von Mises"),
+      law<LinearLaw<NoYield>, ElasticConstants>("linear elastic"),
+      law_that_yields<LinearLaw>("linear von Mises"),
+      law<JaumannLaw<NoYield>, ElasticConstants>("Jaumann elastic"),
+      law_that_yields<JaumannLaw>("Jaumann von Mises"),
       law<NewtonianFluid, NewtonianFluid::Parameters>("Newtonian fluid")};
     return list;
   }

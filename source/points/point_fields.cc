@@ -147,10 +147,7 @@ namespace impm
         points.all_materials(
           [](const Material &material) { return material.specific_heat > 0; }))
       return scalar([&points, energy](unsigned int p) {
-        const auto &material = points.material(p);
-        return material.initial_temperature +
-               energy(p).dissipated /
-                 (material.density * material.specific_heat);
+        return points.material(p).temperature(energy(p).dissipated);
       });
     if (name == "internal_energy")
       return scalar([&points, energy](unsigned int p) {

@@ -20,10 +20,16 @@ namespace impm
    * but hypoelastic: there is no energy that the stress derives from, stress
    * oscillates in a large simple shear, and the tangent is not symmetric.
    */
-  class JaumannLaw final : public PointwiseLaw<JaumannLaw, RateLaw>
+  template <typename Hardening>
+  class JaumannLaw final
+    : public PointwiseLaw<JaumannLaw<Hardening>, RateLaw<Hardening>>
   {
   public:
-    using PointwiseLaw::PointwiseLaw;
+    using Base = PointwiseLaw<JaumannLaw, RateLaw<Hardening>>;
+    using Base::Base;
+    using typename Base::Form;
+    using typename Base::Response;
+    using typename Base::Step;
 
     bool
     evaluate_one(const Step &step,
@@ -44,20 +50,21 @@ namespace impm
         return_stress(dealii::symmetrize(rate.rotation * to_end) + half, step);
       response.kirchhoff_stress = J * end.stress;
       response.potential        = 0;
-      const auto change         = [&](const auto &strain_change,
-                              const auto &rotation_change,
-                              const bool  stretches) {
-        const auto half_change = 0.5 * elastic_stress(strain_change);
-        const dealii::Tensor<2, 3> turned =
-          rotation_change * to_end + 0.5 * rate.rotation *
-                                       dealii::Tensor<2, 3>(half_change) *
-                                       dealii::transpose(rate.rotation);
-        dealii::SymmetricTensor<2, 3> result =
-          J * end.change(2. * dealii::symmetrize(turned) + half_change);
-        if (stretches)
-          result += response.kirchhoff_stress;
-        return result;
-      };
+      const auto change =
+        [&](const dealii::SymmetricTensor<2, 3> &strain_change,
+            const dealii::Tensor<2, 3>          &rotation_change,
+            const bool                           stretches) {
+          const auto half_change = 0.5 * elastic_stress(strain_change);
+          const dealii::Tensor<2, 3> turned =
+            rotation_change * to_end + 0.5 * rate.rotation *
+                                         dealii::Tensor<2, 3>(half_change) *
+                                         dealii::transpose(rate.rotation);
+          dealii::SymmetricTensor<2, 3> result =
+            J * end.change(2. * dealii::symmetrize(turned) + half_change);
+          if (stretches)
+            result += response.kirchhoff_stress;
+          return result;
+        };
       if (with_tangent)
         response.full_tangent = rate.tangent(step.increment, change);
       return std::isfinite(response.kirchhoff_stress.norm());
@@ -68,6 +75,11 @@ namespace impm
     {
       return Form::full;
     }
+
+  private:
+    using Base::elastic_stress;
+    using Base::return_stress;
+    using Base::stress_field;
   };
 } // namespace impm
 

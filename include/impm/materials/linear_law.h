@@ -21,10 +21,16 @@ namespace impm
    *
    * Over a step sigma derives from W = J_n (psi(sigma) + plastic work).
    */
-  class LinearLaw final : public PointwiseLaw<LinearLaw, RateLaw>
+  template <typename Hardening>
+  class LinearLaw final
+    : public PointwiseLaw<LinearLaw<Hardening>, RateLaw<Hardening>>
   {
   public:
-    using PointwiseLaw::PointwiseLaw;
+    using Base = PointwiseLaw<LinearLaw, RateLaw<Hardening>>;
+    using Base::Base;
+    using typename Base::Form;
+    using typename Base::Response;
+    using typename Base::Step;
 
     bool
     evaluate_one(const Step &step,
@@ -44,8 +50,8 @@ namespace impm
                       step);
 
       response.kirchhoff_stress = volume * end.stress;
-      response.potential        = volume * (elastic_energy(end.stress) +
-                                     plastic_work(end.plastic_strain));
+      response.potential =
+        volume * (elastic_energy(end.stress) + end.plastic_work);
       if (with_tangent)
         {
           const double shear = 2 * constants.shear * end.scale;
@@ -63,6 +69,13 @@ namespace impm
     {
       return Form::linearized;
     }
+
+  private:
+    using Base::constants;
+    using Base::elastic_energy;
+    using Base::elastic_stress;
+    using Base::return_stress;
+    using Base::stress_field;
   };
 } // namespace impm
 

@@ -3,7 +3,7 @@
 
 #include <deal.II/physics/transformations.h>
 
-#include <impm/materials/hardening/saturating.h>
+#include <impm/materials/hardening/find_flow.h>
 #include <impm/materials/log_strain_elastic.h>
 
 #include <array>
@@ -15,34 +15,41 @@ namespace impm
    * Multiplicative von Mises plasticity: Hencky's elasticity below the yield
    * limit
    *
-   *   q = sqrt(3/2) |dev tau| <= sigma_y + H alpha
-   *                              + (sigma_s - sigma_y) (1 - exp(-delta alpha))
+   *   q = sqrt(3/2) |dev tau| <= limit of the hardening
    *
    * with associated, isochoric flow and alpha the equivalent plastic strain.
    * In principal logarithmic strains the exponential map makes the return
-   * mapping that of small strains (Simo 1992, see log_strain.h), closed form
-   * with linear hardening. A step minimizes over alpha the potential
+   * mapping that of small strains (Simo 1992, see log_strain.h). A step
+   * minimizes over alpha the potential
    *
    *   W = psi(eps_e) + integral of the yield limit over alpha,
    *
    * whose derivative by the trial strains is tau, so that D is symmetric.
    *
-   * History: "elastic_left_cauchy_green" b_e (-) and
-   * "equivalent_plastic_strain" alpha (-).
+   * History: "elastic_left_cauchy_green" b_e (-) and that of the hardening (see
+   * CurveHardening).
    */
-  class LogStrainVonMises final : public LawInLanes<LogStrainVonMises>
+  template <typename Hardening>
+  class LogStrainVonMises final
+    : public LawInLanes<LogStrainVonMises<Hardening>>
   {
   public:
-    LogStrainVonMises(const MaterialSpec        &spec,
-                      PointLayout               &history,
-                      const ElasticConstants    &elasticity,
-                      const SaturatingHardening &hardening)
-      : LawInLanes(spec, elasticity.young, elasticity.longitudinal_modulus())
+    template <typename Number>
+    using BasicStep = Material::BasicStep<Number>;
+
+    template <typename Number>
+    using BasicResponse = Material::BasicResponse<Number>;
+
+    LogStrainVonMises(const MaterialSpec                   &spec,
+                      PointLayout                          &history,
+                      const ElasticConstants               &elasticity,
+                      const typename Hardening::Parameters &parameters)
+      : LawInLanes<LogStrainVonMises>(spec,
+                                      elasticity.young,
+                                      elasticity.longitudinal_modulus())
       , elasticity{elasticity}
-      , hardening(hardening)
       , elastic(history, "elastic_left_cauchy_green")
-      , plastic_offset(
-          history.add("equivalent_plastic_strain", PointLayout::Kind::scalar))
+      , hardening(spec, history, parameters)
     {}
 
     void
@@ -70,8 +77,6 @@ namespace impm
 
       auto                  stress = elasticity.stress(principal.strain);
       std::array<Number, 3> elastic_strain = principal.strain;
-      const Number          before         = read(step.history, plastic_offset);
-      Number                alpha          = before;
 
       const Number mean =
         (stress.stress[0] + stress.stress[1] + stress.stress[2]) / 3.;
@@ -85,22 +90,20 @@ namespace impm
       using std::sqrt;
       const Number q = sqrt(1.5 * squares);
 
-      const Number excess = q - hardening.yield_stress(before);
-      const auto   flows  = excess > 0.;
-      auto         end    = trial;
+      const double shear = elasticity.shear;
+      const auto   limit = hardening.limit(step);
+      const Number flow  = find_flow(q, limit, 3. * shear);
+      const auto   flows = flow != 0.; // or there is none, NaN
+      auto         end   = trial;
       if (any_of(flows))
         {
-          const double shear = elasticity.shear;
-          const Number flow  = select(flows,
-                                     hardening.flow(excess, before, 3. * shear),
-                                     Number(0.));
-          alpha += flow;
-          const Number resistance = 3. * shear + hardening.slope(alpha);
+          const Number resistance = 3. * shear + limit.slope(flow);
 
           // The deviator shrinks onto the yield limit along its own direction.
           const Number size = select(flows, q, Number(1.));
+          const Number part = limit.yield_stress(flow) / size;
           const Number scale =
-            select(flows, hardening.yield_stress(alpha) / size, Number(1.));
+            select(flows, select(part > 1., Number(1.), part), Number(1.));
           const Number mean_strain =
             (elastic_strain[0] + elastic_strain[1] + elastic_strain[2]) / 3.;
           std::array<Number, 3> stretches_squared;
@@ -142,21 +145,21 @@ namespace impm
             }
         }
       elastic.store(end, step.trial_history);
-      write(alpha, step.trial_history, plastic_offset);
+      const Number work = limit.work(flow);
+      hardening.store(limit, flow, work, step.trial_history);
 
       response.kirchhoff_stress = LogStrain::compose(stress.stress, principal);
-      response.potential =
-        elasticity.energy(elastic_strain) + hardening.work(alpha);
+      response.potential        = elasticity.energy(elastic_strain) + work;
       if (with_tangent)
         LogStrain::lie_tangent(principal, stress, response.tangent);
       return all_of(is_finite(response.potential));
     }
 
-    Energy
+    Material::Energy
     energy(const dealii::Tensor<2, 3> &, const double *history) const override
     {
       return {elasticity.energy(elastic.load(history)),
-              hardening.work(history[plastic_offset])};
+              hardening.work(history)};
     }
 
     bool
@@ -166,10 +169,9 @@ namespace impm
     }
 
   private:
-    const HenckyElasticity    elasticity;
-    const SaturatingHardening hardening;
-    const HistoryTensor       elastic;
-    const unsigned int        plastic_offset;
+    const HenckyElasticity elasticity;
+    const HistoryTensor    elastic;
+    const Hardening        hardening;
   };
 } // namespace impm
 

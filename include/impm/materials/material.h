@@ -21,6 +21,16 @@ namespace impm
 
     double specific_heat       = 0; ///< (J/(kg K)); 0: no temperature
     double initial_temperature = 0; ///< (K), if it has a specific heat
+    double heating_share       = 1; ///< of plastic or viscous work, 0 to 1
+
+    /** (K) after what has been dissipated (J/m^3); nothing is conducted. */
+    template <typename Number>
+    Number
+    temperature(const Number &dissipated) const
+    {
+      return initial_temperature +
+             heating_share / (density * specific_heat) * dissipated;
+    }
   };
 
   /**

@@ -2,38 +2,51 @@
 #define impm_materials_rate_law_h
 
 #include <impm/materials/elastic_constants.h>
-#include <impm/materials/hardening/bilinear.h>
+#include <impm/materials/hardening/find_flow.h>
 #include <impm/materials/material.h>
 
 #include <cmath>
-#include <optional>
+#include <type_traits>
 
 namespace impm
 {
+  /** In place of a hardening: laws that are elastic. */
+  struct NoYield
+  {
+    struct Parameters
+    {};
+
+    NoYield(const MaterialSpec &, PointLayout &, const Parameters &)
+    {}
+
+    double
+    work(const double *) const
+    {
+      return 0;
+    }
+  };
+
   /**
-   * What laws in rate form share (Sulsky & Kaul 2004, eq. 2.1.8 to 2.1.19):
+   * What laws in rate form share (Sulsky & Kaul 2004, eq. 2.1.8 to 2.1.18):
    * the Cauchy stress is what a point remembers, its rate is C : d with the
    * constants of isotropic elasticity, and where there is a yield stress it
    * returns to it along its deviator (backward Euler with associated flow).
    *
-   * History: "cauchy_stress" (Pa) and, if plastic, "equivalent_plastic_strain".
+   * History: "cauchy_stress" (Pa) and that of the hardening (see
+   * CurveHardening).
    */
+  template <typename Hardening>
   class RateLaw : public Material
   {
   public:
-    using Hardening = std::optional<BilinearHardening>;
-
-    RateLaw(const MaterialSpec     &spec,
-            PointLayout            &history,
-            const ElasticConstants &constants,
-            const Hardening        &hardening = {})
+    RateLaw(const MaterialSpec                   &spec,
+            PointLayout                          &history,
+            const ElasticConstants               &constants,
+            const typename Hardening::Parameters &parameters = {})
       : Material(spec, constants.young, constants.longitudinal_modulus())
       , constants(constants)
       , stress_field(history, "cauchy_stress")
-      , hardening(hardening)
-      , plastic_offset(hardening ? history.add("equivalent_plastic_strain",
-                                               PointLayout::Kind::scalar) :
-                                   0)
+      , hardening(spec, history, parameters)
     {}
 
     Energy
@@ -42,7 +55,7 @@ namespace impm
     {
       return {dealii::determinant(deformation_gradient) *
                 elastic_energy(stress_field.load(history)),
-              hardening ? plastic_work(history[plastic_offset]) : 0.};
+              hardening.work(history)};
     }
 
     bool
@@ -57,9 +70,9 @@ namespace impm
     {
       dealii::SymmetricTensor<2, 3> stress;
       dealii::SymmetricTensor<2, 3> deviator; ///< of the trial stress
-      double                        plastic_strain = 0;
-      double scale     = 1; ///< of the deviator, down to the yield stress
-      double steepness = 0; ///< d scale / d deviator = steepness deviator
+      double plastic_work = 0;                ///< since the start (J/m^3)
+      double scale        = 1; ///< of the deviator, down to the yield stress
+      double steepness    = 0; ///< d scale / d deviator = steepness deviator
 
       dealii::SymmetricTensor<2, 3>
       change(const dealii::SymmetricTensor<2, 3> &change_of_trial) const
@@ -77,24 +90,23 @@ namespace impm
     {
       Return result;
       result.stress = trial;
-      if (hardening)
+      if constexpr (!std::is_same_v<Hardening, NoYield>)
         {
-          const double before   = step.history[plastic_offset];
-          result.deviator       = dealii::deviator(trial);
-          result.plastic_strain = before;
-          const double q        = std::sqrt(1.5) * result.deviator.norm();
-          if (q > hardening->yield_stress(before))
+          result.deviator     = dealii::deviator(trial);
+          const double q      = std::sqrt(1.5) * result.deviator.norm();
+          const double relief = 3 * constants.shear;
+          const auto   limit  = hardening.limit(step);
+          const double flow   = find_flow(q, limit, relief);
+          if (flow != 0) // or there is none, NaN
             {
-              const double resistance = 3 * constants.shear;
-              const auto   end        = hardening->flow(q, before, resistance);
-              const double flow       = end.plastic_strain - before;
-              result.plastic_strain   = end.plastic_strain;
-              result.scale = hardening->yield_stress(end.plastic_strain) / q;
-              result.steepness = 1.5 * resistance / (q * q) *
-                                 (flow / q - 1 / (resistance + end.slope));
+              const double part = limit.yield_stress(flow) / q;
+              result.scale      = part > 1 ? 1 : part;
+              result.steepness  = 1.5 * relief / (q * q) *
+                                 (flow / q - 1 / (relief + limit.slope(flow)));
               result.stress -= (1 - result.scale) * result.deviator;
             }
-          step.trial_history[plastic_offset] = result.plastic_strain;
+          result.plastic_work = limit.work(flow);
+          hardening.store(limit, flow, result.plastic_work, step.trial_history);
         }
       stress_field.store(result.stress, step.trial_history);
       return result;
@@ -119,19 +131,11 @@ namespace impm
              deviator * deviator / (4 * constants.shear);
     }
 
-    /** Plastic work (J/m^3). */
-    double
-    plastic_work(const double plastic_strain) const
-    {
-      return hardening ? hardening->work(plastic_strain) : 0.;
-    }
-
     const ElasticConstants constants;
     const HistoryTensor    stress_field;
 
   private:
-    const Hardening    hardening;
-    const unsigned int plastic_offset;
+    const Hardening hardening;
   };
 } // namespace impm
 

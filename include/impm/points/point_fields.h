@@ -33,8 +33,9 @@ namespace impm
    * Names of all the fields that some scene can have. Those that points do
    * not carry follow from what they do:
    *
-   *   temperature      T0 + plastic work / (rho0 c): all of it heats, nothing
-   *                    is conducted (Sulsky & Kaul 2004, eq. 2.3.5) (K)
+   *   temperature      T0 + share * plastic work / (rho0 c): that share of it
+   *                    heats, 1 by default, nothing is conducted (Sulsky & Kaul
+   *                    2004, eq. 2.3.5) (K)
    *   parent           id of the point that it was split from, or -1
    *   internal_energy  what is stored plus plastic work (eq. 2.2.16) (J/kg)
    *   principal_stress_difference

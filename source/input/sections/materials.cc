@@ -64,6 +64,10 @@ namespace impm
                       spec.initial_temperature,
                       {"293.15", 0},
                       "(K).");
+          section.add("Taylor-Quinney factor",
+                      spec.heating_share,
+                      {"1", 0, 1},
+                      "Share of that work that becomes temperature.");
         }
       std::shared_ptr<const Material> material;
       if (section.is_read)

@@ -219,6 +219,7 @@ TEST(Scene, LawsThatDoNotFit)
                {"'true'", "plane stress"});
   const Overrides softening = {"Materials/rubber/Law=linear von Mises",
                                "Materials/rubber/Yield stress=0.01",
+                               "Materials/rubber/Hardening=bilinear",
                                "Materials/rubber/Limit strain=0.1"};
   expect_blame(softening + Overrides{"Materials/rubber/Softening modulus=2"},
                "Materials/rubber/Softening modulus",

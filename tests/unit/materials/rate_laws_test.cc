@@ -1,4 +1,7 @@
 #include <impm/balance/kinematics.h>
+#include <impm/materials/hardening/bilinear.h>
+#include <impm/materials/hardening/curve_hardening.h>
+#include <impm/materials/linear_law.h>
 
 #include <gtest/gtest.h>
 
@@ -297,6 +300,8 @@ TEST(JaumannLaw, StressTurnsWithTheMaterial)
           LawPoint point(named);
           give_a_past(point, generator);
           const auto before = point.cauchy_stress();
+          if (named.law->is_solid())
+            point.dt = 0; // or a stress that depends on the rate relaxes
           ASSERT_TRUE(point.evaluate(q));
           const auto expected =
             named.law->is_solid() ?
@@ -311,8 +316,7 @@ TEST(JaumannLaw, StressTurnsWithTheMaterial)
 // d sigma_12 / d gamma = G - sigma_11, d sigma_11 / d gamma = sigma_12.
 TEST(JaumannLaw, SimpleShear)
 {
-  const auto law =
-    make_law<JaumannLaw>("", GeometryKind::three_d, unit_elasticity);
+  const auto            law = listed_law("Jaumann elastic", {});
   const double          G = unit_elasticity.shear, gamma = 4.;
   std::array<double, 2> error;
   for (const unsigned int refinement : {0, 1})
@@ -342,8 +346,8 @@ TEST(LinearLaw, UniaxialTensionByHand)
 {
   const double            sigma_y = 0.02, c_1 = 0.1, limit = 0.05, c_2 = 0.15;
   const BilinearHardening hardening({sigma_y, c_1}, limit, c_2);
-  const auto              law =
-    make_law<LinearLaw>("", GeometryKind::three_d, unit_elasticity, hardening);
+  const auto law = make_law<LinearLaw<CurveHardening<BilinearHardening>>>(
+    "", GeometryKind::three_d, unit_elasticity, hardening);
   // alpha, H(alpha)
   const double highest = sigma_y + c_1 * limit;
   for (const auto &[alpha, stress] : {std::pair<double, double>(0., 0.015),

@@ -1,5 +1,7 @@
 #include <deal.II/base/parameter_handler.h>
 
+#include <impm/materials/hardening/curve_hardening.h>
+#include <impm/materials/hardening/voce.h>
 #include <impm/materials/list.h>
 #include <impm/materials/log_strain_von_mises.h>
 
@@ -31,11 +33,11 @@ namespace
   {
     explicit PointState(const double       hardening,
                         const GeometryKind geometry = GeometryKind::three_d)
-      : PointState(SaturatingHardening{{sigma_y, hardening}}, geometry)
+      : PointState(VoceHardening{{sigma_y, hardening}}, geometry)
     {}
 
-    explicit PointState(const SaturatingHardening &hardening,
-                        const GeometryKind geometry = GeometryKind::three_d)
+    explicit PointState(const VoceHardening &hardening,
+                        const GeometryKind   geometry = GeometryKind::three_d)
       : layout(geometry)
       , law({1000.}, layout, elasticity, hardening)
       , history(layout.size())
@@ -85,8 +87,8 @@ namespace
       return values[layout.offset("equivalent_plastic_strain")];
     }
 
-    PointLayout         layout;
-    LogStrainVonMises   law;
+    PointLayout                                      layout;
+    LogStrainVonMises<CurveHardening<VoceHardening>> law;
     Tensor<2, 3>        total = unit_symmetric_tensor<3>();
     std::vector<double> history, trial_history;
     Material::Response  response;
@@ -157,8 +159,8 @@ TEST(VonMises, TangentAndStressWhereHardeningSaturates)
     for (const bool planar : {true, false})
       for (unsigned int n = 0; n < 20; ++n)
         {
-          const SaturatingHardening hardening{{sigma_y, 0.01}, 0.03, rate};
-          PointState                point(hardening);
+          const VoceHardening hardening{{sigma_y, 0.01}, 0.03, rate};
+          PointState          point(hardening);
           point.advance(random_gradient(generator, planar, 0.25));
           const auto increment = random_gradient(generator, planar, 0.25);
           point.respond(increment);

@@ -1,13 +1,15 @@
 #ifndef impm_tests_unit_law_fixture_h
 #define impm_tests_unit_law_fixture_h
 
-#include <impm/materials/jaumann_law.h>
-#include <impm/materials/linear_law.h>
+#include <deal.II/base/parameter_handler.h>
+
+#include <impm/materials/list.h>
 #include <impm/materials/log_strain_elastic.h>
-#include <impm/materials/log_strain_von_mises.h>
 #include <impm/materials/neo_hookean.h>
 #include <impm/materials/newtonian_fluid.h>
 
+#include <algorithm>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -37,27 +39,101 @@ namespace impm
     return {name, law, history};
   }
 
+  using Entries = std::map<std::string, std::string>;
+
+  /** A law of the program, from its entries; elasticity is the unit one. */
+  inline NamedLaw
+  listed_law(const std::string  &name,
+             const Entries      &entries,
+             const GeometryKind  geometry = GeometryKind::three_d,
+             const MaterialSpec &spec     = {1.})
+  {
+    const auto &list = material_list();
+    const auto law = std::find_if(list.begin(), list.end(), [&](const auto &l) {
+      return l.name == name;
+    });
+    dealii::ParameterHandler prm;
+    law->declare(prm,
+                 [&](const std::string &entry, const std::string &fallback) {
+                   const auto found = entries.find(entry);
+                   return found == entries.end() ? fallback : found->second;
+                 });
+    prm.declare_entry("Specific heat", "");
+    prm.set("Young's modulus", "1");
+    for (const auto &[entry, value] : entries)
+      prm.set(entry, value);
+    PointLayout                     history(geometry);
+    std::shared_ptr<const Material> material  = law->create(prm, spec, history);
+    const auto                      hardening = entries.find("Hardening");
+    return {hardening == entries.end() ? name : name + ", " + hardening->second,
+            material,
+            history};
+  }
+
+  /** Hardenings that yield early, in units of Young's modulus. */
+  inline std::vector<Entries>
+  all_hardenings()
+  {
+    std::vector<Entries> list = {{{"Hardening", "linear"},
+                                  {"Hardening modulus", "0.1"}},
+                                 {{"Hardening", "bilinear"},
+                                  {"Hardening modulus", "0.1"},
+                                  {"Limit strain", "0.01"},
+                                  {"Softening modulus", "0.2"}},
+                                 {{"Hardening", "Voce"},
+                                  {"Hardening modulus", "0.1"},
+                                  {"Saturation stress", "0.03"},
+                                  {"Saturation rate", "5"}},
+                                 {{"Hardening", "Swift"},
+                                  {"Reference strain", "0.05"},
+                                  {"Hardening exponent", "0.3"}},
+                                 {{"Hardening", "Ludwik"},
+                                  {"Strength coefficient", "0.03"},
+                                  {"Hardening exponent", "0.4"}},
+                                 {{"Hardening", "Johnson-Cook"},
+                                  {"Strength coefficient", "0.03"},
+                                  {"Hardening exponent", "0.4"},
+                                  {"Rate coefficient", "0.1"},
+                                  {"Reference rate", "0.001"},
+                                  {"Specific heat", "1"},
+                                  {"Reference temperature", "0.9"},
+                                  {"Melting temperature", "1.5"},
+                                  {"Thermal exponent", "0.8"}}};
+    for (auto &hardening : list)
+      hardening["Yield stress"] = "0.01";
+    list.push_back(
+      {{"Hardening", "table"},
+       {"Yield stresses", "0 0.01; 0.004 0.015; 0.3 0.02; 0.5 0.01"}});
+    return list;
+  }
+
+  /** With a specific heat and a temperature that softens at once. */
+  inline const MaterialSpec warm = [] {
+    MaterialSpec spec{1.};
+    spec.specific_heat       = 1;
+    spec.initial_temperature = 1;
+    spec.heating_share       = 0.9;
+    return spec;
+  }();
+
+  inline const std::vector<std::string> laws_that_yield = {
+    "log-strain von Mises", "linear von Mises", "Jaumann von Mises"};
+
   /** Every kind of law, of stiffness 1, which yields early if it yields. */
   inline std::vector<NamedLaw>
   all_solids(const GeometryKind g = GeometryKind::three_d)
   {
-    const auto              &c = unit_elasticity;
-    const LinearHardening    linear{0.01, 0.1};
-    const RateLaw::Hardening hardening(std::in_place, linear),
-      softening(std::in_place, linear, 0.01, 0.2);
-    return {make_law<LogStrainElastic>("log-strain elastic", g, c),
-            make_law<LogStrainVonMises>("log-strain von Mises",
-                                        g,
-                                        c,
-                                        SaturatingHardening{linear, 0.02, 5.}),
-            make_law<NeoHookean<false>>("neo-Hookean", g, c),
-            make_law<NeoHookean<true>>("decoupled neo-Hookean", g, c),
-            make_law<LinearLaw>("linear elastic", g, c),
-            make_law<LinearLaw>("linear von Mises", g, c, hardening),
-            make_law<LinearLaw>("linear, softening", g, c, softening),
-            make_law<JaumannLaw>("Jaumann elastic", g, c),
-            make_law<JaumannLaw>("Jaumann von Mises", g, c, hardening),
-            make_law<JaumannLaw>("Jaumann, softening", g, c, softening)};
+    const auto           &c    = unit_elasticity;
+    std::vector<NamedLaw> laws = {
+      make_law<LogStrainElastic>("log-strain elastic", g, c),
+      make_law<NeoHookean<false>>("neo-Hookean", g, c),
+      make_law<NeoHookean<true>>("decoupled neo-Hookean", g, c),
+      listed_law("linear elastic", {}, g),
+      listed_law("Jaumann elastic", {}, g)};
+    for (const auto &law : laws_that_yield)
+      for (const auto &hardening : all_hardenings())
+        laws.push_back(listed_law(law, hardening, g, warm));
+    return laws;
   }
 
   inline NamedLaw

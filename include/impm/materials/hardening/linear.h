@@ -1,26 +1,25 @@
 #ifndef impm_materials_hardening_linear_h
 #define impm_materials_hardening_linear_h
 
-#include <deal.II/base/parameter_handler.h>
-#include <deal.II/base/patterns.h>
-
 #include <impm/input/parameter_file.h>
+#include <impm/materials/hardening/entries.h>
 
 namespace impm
 {
-  /** A yield stress that is linear in the equivalent plastic strain. */
+  /**
+   * A yield stress that is linear in the equivalent plastic strain:
+   *
+   *   sigma_y + H alpha.
+   */
   struct LinearHardening
   {
+    static constexpr const char *name = "linear";
+
     static void
     declare_parameters(dealii::ParameterHandler &prm,
                        const ParameterFile::Chosen &)
     {
-      prm.declare_entry("Yield stress",
-                        "1e6",
-                        dealii::Patterns::Double(1e-300),
-                        "Uniaxial stress (Pa; Kirchhoff's in laws of "
-                        "logarithmic strains) at which the material starts to "
-                        "yield, positive.");
+      declare_yield_stress(prm);
       prm.declare_entry("Hardening modulus",
                         "0",
                         dealii::Patterns::Double(0.),
@@ -41,6 +40,14 @@ namespace impm
     yield_stress(const Number &plastic_strain) const
     {
       return initial + modulus * plastic_strain;
+    }
+
+    /** Its slope (Pa). */
+    template <typename Number>
+    Number
+    slope(const Number &) const
+    {
+      return modulus;
     }
 
     /** Its integral since the start: plastic work (J/m^3). */

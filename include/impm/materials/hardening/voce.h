@@ -1,5 +1,5 @@
-#ifndef impm_materials_hardening_saturating_h
-#define impm_materials_hardening_saturating_h
+#ifndef impm_materials_hardening_voce_h
+#define impm_materials_hardening_voce_h
 
 #include <impm/base/exceptions.h>
 #include <impm/materials/hardening/linear.h>
@@ -10,12 +10,15 @@ namespace impm
 {
   /**
    * A yield stress that grows linearly with the equivalent plastic strain and
-   * by a part that saturates (Voce; Simo & Hughes):
+   * by a part that saturates (E. Voce, J. Inst. Metals 74 (1948) 537; with both
+   * parts J. C. Simo, CMAME 66 (1988) 199):
    *
    *   sigma_y + H alpha + (sigma_s - sigma_y) (1 - exp(-delta alpha)).
    */
-  struct SaturatingHardening
+  struct VoceHardening
   {
+    static constexpr const char *name = "Voce";
+
     static void
     declare_parameters(dealii::ParameterHandler    &prm,
                        const ParameterFile::Chosen &chosen)
@@ -33,7 +36,7 @@ namespace impm
                         "plastic strain.");
     }
 
-    static SaturatingHardening
+    static VoceHardening
     from_parameters(dealii::ParameterHandler &prm)
     {
       const auto   linear     = LinearHardening::from_parameters(prm);
@@ -45,21 +48,13 @@ namespace impm
               prm.get_double("Saturation rate")};
     }
 
-    bool
-    is_linear() const
-    {
-      return range * rate == 0;
-    }
-
     /** Yield stress (Pa). */
     template <typename Number>
     Number
     yield_stress(const Number &plastic_strain) const
     {
-      const Number on_the_line = linear.yield_stress(plastic_strain);
-      return is_linear() ?
-               on_the_line :
-               Number(on_the_line + range * (1. - remainder(plastic_strain)));
+      return linear.yield_stress(plastic_strain) +
+             range * saturated(plastic_strain);
     }
 
     /** Its slope (Pa). */
@@ -67,9 +62,7 @@ namespace impm
     Number
     slope(const Number &plastic_strain) const
     {
-      return is_linear() ? Number(linear.modulus) :
-                           Number(linear.modulus +
-                                  range * rate * remainder(plastic_strain));
+      return linear.modulus + range * rate * (1. - saturated(plastic_strain));
     }
 
     /** Its integral since the start: plastic work (J/m^3). */
@@ -78,35 +71,10 @@ namespace impm
     work(const Number &plastic_strain) const
     {
       const Number on_the_line = linear.work(plastic_strain);
-      return is_linear() ?
+      return rate == 0 ?
                on_the_line :
-               Number(on_the_line +
-                      range * (plastic_strain -
-                               (1. - remainder(plastic_strain)) / rate));
-    }
-
-    /**
-     * How far a point flows whose trial stress is `excess` above its yield
-     * stress at `before` and falls by `relief` times the flow: Newton's method,
-     * which comes from below, since the yield stress is concave.
-     */
-    template <typename Number>
-    Number
-    flow(const Number &excess, const Number &before, const double relief) const
-    {
-      Number       flow  = excess / (relief + slope(before));
-      const Number start = yield_stress(before);
-      for (unsigned int i = 0; i < 20 && !is_linear(); ++i)
-        {
-          const Number end = before + flow;
-          const Number rest =
-            excess - relief * flow - yield_stress(end) + start;
-          flow += rest / (relief + slope(end));
-          using std::abs;
-          if (all_of(abs(rest) <= 1e-14 * start))
-            break;
-        }
-      return flow;
+               Number(on_the_line + range * (plastic_strain -
+                                             saturated(plastic_strain) / rate));
     }
 
     LinearHardening linear;
@@ -114,12 +82,13 @@ namespace impm
     double          rate  = 0; ///< its exponent
 
   private:
+    /** The share that has done so. */
     template <typename Number>
     Number
-    remainder(const Number &plastic_strain) const
+    saturated(const Number &plastic_strain) const
     {
-      return each([](const double x) { return std::exp(x); },
-                  Number(-rate * plastic_strain));
+      return 1. - each([](const double x) { return std::exp(x); },
+                       Number(-rate * plastic_strain));
     }
   };
 } // namespace impm

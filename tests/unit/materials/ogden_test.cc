@@ -29,7 +29,10 @@ namespace
     const Ogden        law({1.}, no_history, parameters);
     Material::Response response;
     EXPECT_TRUE(law.evaluate_one({F, F, 0., nullptr, nullptr}, true, response));
-    EXPECT_EQ(law.energy(F, nullptr).stored, response.potential);
+    // the same formula, but not the same rounding
+    EXPECT_NEAR(law.energy(F, nullptr).stored,
+                response.potential,
+                1e-15 * (response.tangent.norm() + response.potential));
     return response;
   }
 
@@ -39,12 +42,11 @@ namespace
                    const Tensor<2, 3>      &F,
                    const double             h)
   {
-    const auto respond = [&](const Tensor<2, 3> &F) {
-      return ::respond(parameters, F);
+    const auto at = [&](const Tensor<2, 3> &disturbed) {
+      return respond(parameters, disturbed);
     };
-    const auto here = respond(F);
-    return std::max(tangent_error(respond, F, h),
-                    potential_error(respond, F, h)) /
+    const auto here = at(F);
+    return std::max(tangent_error(at, F, h), potential_error(at, F, h)) /
            (here.tangent.norm() + here.kirchhoff_stress.norm());
   }
 
@@ -285,29 +287,34 @@ TEST(Ogden, Objectivity)
 TEST(Ogden, WhatIsRefused)
 {
   const std::string rubber = "Materials/rubber/";
-  const auto        blame  = [&](const Lines                    &entries,
+  const auto        blame  = [&](const std::string              &law,
+                         Overrides                       overrides,
                          const std::string              &entry,
                          const std::vector<std::string> &words) {
-    expect_blame(law_scene("plane strain", entries), {}, rubber + entry, words);
+    for (auto &override : overrides)
+      override = rubber + override;
+    expect_blame(law_scene("plane strain", {"Law = " + law}),
+                 overrides,
+                 rubber + entry,
+                 words);
   };
-  blame({"Law = Ogden", "Ogden moduli = 1, 2", "Ogden exponents = 2"},
+  blame("Ogden",
+        {"Ogden moduli=1, 2", "Ogden exponents=2"},
         "Ogden exponents",
         {"'2'", "2 numbers", "Ogden moduli"});
   for (const std::string exponents : {"2, -1", "2, 0"})
-    blame({"Law = Ogden",
-           "Ogden moduli = 1, 2",
-           "Ogden exponents = " + exponents},
+    blame("Ogden",
+          {"Ogden moduli=1, 2", "Ogden exponents=" + exponents},
           "Ogden exponents",
           {exponents, "sign", "shear modulus"});
-  blame({"Law = Ogden", "Ogden moduli =", "Ogden exponents ="},
+  blame("Ogden",
+        {"Ogden moduli=", "Ogden exponents="},
         "Ogden moduli",
         {"nothing"});
-  blame({"Law = Ogden", "Ogden moduli = 1, x", "Ogden exponents = 2, 2"},
-        "Ogden moduli",
-        {"x"});
-  blame({"Law = Ogden", "Bulk modulus = 0"}, "Bulk modulus", {"0"});
-  blame({"Law = Mooney-Rivlin", "C10 = 0", "C01 = 0"}, "C10", {"shear"});
-  blame({"Law = Mooney-Rivlin", "C01 = -1"}, "C01", {"-1"});
+  blame("Ogden", {"Ogden moduli=1, x"}, "Ogden moduli", {"1, x"});
+  blame("Ogden", {"Bulk modulus=0"}, "Bulk modulus", {"'0'"});
+  blame("Mooney-Rivlin", {"C10=0", "C01=0"}, "C10", {"shear"});
+  blame("Mooney-Rivlin", {"C01=-1"}, "C01", {"-1"});
 }
 
 

@@ -144,14 +144,15 @@ namespace impm
       make_law<LogStrainElastic>("log-strain elastic", g, c),
       make_law<NeoHookean<false>>("neo-Hookean", g, c),
       make_law<NeoHookean<true>>("decoupled neo-Hookean", g, c),
-      make_law<Ogden>("Ogden", g, unit_rubber),
-      make_law<LogStrainViscoelastic>("branches", g, unit_viscoelasticity),
-      make_law<LogStrainViscoelastic>("dashpots", g, unit_dashpots),
       listed_law("linear elastic", {}, g),
       listed_law("Jaumann elastic", {}, g)};
     for (const auto &law : laws_that_yield)
       for (const auto &hardening : all_hardenings())
         laws.push_back(listed_law(law, hardening, g, warm));
+    laws.push_back(make_law<Ogden>("Ogden", g, unit_rubber));
+    for (const auto &parameters : {unit_viscoelasticity, unit_dashpots})
+      laws.push_back(make_law<LogStrainViscoelastic>(
+        parameters.viscosity > 0 ? "dashpots" : "branches", g, parameters));
     return laws;
   }
 

@@ -27,12 +27,13 @@ namespace impm
       const bool open = upper == "MAX_DOUBLE" || upper == "2147483647";
       if (lower == "-MAX_DOUBLE" && open)
         return what;
-      if (open && (lower == "2.22507e-308" || lower == "1e-300"))
+      const bool above_zero = lower == "2.22507e-308" || lower == "1e-300";
+      if (open && above_zero)
         return what + " greater than 0";
       if (open)
         return what + " of at least " + lower;
-      return what + " from " + (lower == "2.22507e-308" ? "above 0" : lower) +
-             " to " + upper;
+      return what + " from " + (above_zero ? "above 0" : lower) + " to " +
+             upper;
     }
 
     /**

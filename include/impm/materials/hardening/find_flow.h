@@ -47,27 +47,30 @@ namespace impm
         const Number end  = limit.yield_stress(flow);
         const Number rest = trial - relief * flow - end;
         const Number size = abs(rest);
+        is_done = is_done || size <= 1e-14 * end + 4 * epsilon * trial;
+        if (all_of(is_done))
+          return flow;
         if (!all_of(is_done || is_finite(rest)))
           break;
 
         const auto falls_short = rest > 0.;
         lower                  = select(falls_short, flow, lower);
         upper                  = select(falls_short, upper, flow);
-        is_done = is_done || size <= 1e-14 * end + 4 * epsilon * trial ||
-                  upper - lower <= epsilon * upper || upper <= tiny;
-        if (all_of(is_done))
-          return flow;
+        is_done = is_done || upper - lower <= epsilon * upper || upper <= tiny;
 
-        const Number newton = flow + rest / (relief + limit.slope(flow));
-        const auto   converges =
-          newton > lower && newton < upper && size <= 0.5 * last;
-        const Number middle =
-          select(upper > 2. * lower,
-                 Number(sqrt(select(lower > tiny, lower, Number(tiny))) *
-                        sqrt(upper)),
-                 Number(lower + 0.5 * (upper - lower)));
+        Number     next = flow + rest / (relief + limit.slope(flow));
+        const auto converges =
+          next > lower && next < upper && size <= 0.5 * last;
         last = select(converges, size, Number(infinity));
-        flow = select(is_done, flow, select(converges, newton, middle));
+        if (!all_of(is_done || converges))
+          {
+            const Number least  = select(lower > tiny, lower, Number(tiny));
+            const Number middle = select(upper > 2. * least,
+                                         Number(sqrt(least) * sqrt(upper)),
+                                         Number(lower + 0.5 * (upper - lower)));
+            next                = select(converges, next, middle);
+          }
+        flow = select(is_done, flow, next);
       }
     return select(is_done,
                   flow,

@@ -295,7 +295,7 @@ TEST(Ogden, WhatIsRefused)
       override = rubber + override;
     expect_blame(law_scene("plane strain", {"Law = " + law}),
                  overrides,
-                 rubber + entry,
+                 entry.empty() ? "" : rubber + entry,
                  words);
   };
   blame("Ogden",
@@ -311,10 +311,10 @@ TEST(Ogden, WhatIsRefused)
         {"Ogden moduli=", "Ogden exponents="},
         "Ogden moduli",
         {"nothing"});
-  blame("Ogden", {"Ogden moduli=1, x"}, "Ogden moduli", {"1, x"});
-  blame("Ogden", {"Bulk modulus=0"}, "Bulk modulus", {"'0'"});
+  blame("Ogden", {"Ogden moduli=1, x"}, "", {"Ogden moduli", "'1, x'"});
+  blame("Ogden", {"Bulk modulus=0"}, "", {"Bulk modulus", "'0'"});
   blame("Mooney-Rivlin", {"C10=0", "C01=0"}, "C10", {"shear"});
-  blame("Mooney-Rivlin", {"C01=-1"}, "C01", {"-1"});
+  blame("Mooney-Rivlin", {"C01=-1"}, "", {"C01", "'-1'"});
 }
 
 

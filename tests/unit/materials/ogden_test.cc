@@ -339,8 +339,8 @@ TEST(OgdenMpi, DrawnBlocks)
 
 
 // A short block under a platen that does not slip, nearly incompressible: with
-// F-bar the tangent is that of the residual, Newton's method is quadratic, and
-// the block is softer than without, where it locks.
+// F-bar as without the tangent is that of the residual, and with it the block
+// is softer: without it locks.
 TEST(OgdenMpi, MeanVolumeOfTreloarsRubber)
 {
   const Lines rubber  = {"Law = Ogden",

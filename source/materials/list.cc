@@ -6,9 +6,11 @@
 #include <impm/materials/linear_law.h>
 #include <impm/materials/list.h>
 #include <impm/materials/log_strain_elastic.h>
+#include <impm/materials/log_strain_viscoelastic.h>
 #include <impm/materials/log_strain_von_mises.h>
 #include <impm/materials/neo_hookean.h>
 #include <impm/materials/newtonian_fluid.h>
+#include <impm/materials/ogden.h>
 
 namespace impm
 {
@@ -105,6 +107,10 @@ namespace impm
       law_that_yields<LogStrainVonMises>("log-strain von Mises", true),
       law<NeoHookean<false>, ElasticConstants>("neo-Hookean"),
       law<NeoHookean<true>, ElasticPair>("decoupled neo-Hookean"),
+      law<Ogden, Ogden::Parameters>("Ogden"),
+      law<Ogden, MooneyRivlin>("Mooney-Rivlin"),
+      law<LogStrainViscoelastic, LogStrainViscoelastic::Parameters>(
+        "log-strain viscoelastic"),
       law<LinearLaw<NoYield>, ElasticConstants>("linear elastic"),
       law_that_yields<LinearLaw>("linear von Mises"),
       law<JaumannLaw<NoYield>, ElasticConstants>("Jaumann elastic"),

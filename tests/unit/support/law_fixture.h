@@ -5,8 +5,10 @@
 
 #include <impm/materials/list.h>
 #include <impm/materials/log_strain_elastic.h>
+#include <impm/materials/log_strain_viscoelastic.h>
 #include <impm/materials/neo_hookean.h>
 #include <impm/materials/newtonian_fluid.h>
+#include <impm/materials/ogden.h>
 
 #include <algorithm>
 #include <map>
@@ -116,6 +118,20 @@ namespace impm
     return spec;
   }();
 
+  /** Rubber of the unit elasticity, with terms of both signs. */
+  inline const Ogden::Parameters unit_rubber = {
+    {{unit_elasticity.shear * 1.6 / 1.3, 1.3},
+     {unit_elasticity.shear * 0.1 / 4., 4.},
+     {unit_elasticity.shear * 0.3 / -2., -2.}},
+    unit_elasticity.bulk};
+
+  /** Two branches, one faster and one slower than a step of 0.5 s. */
+  inline const LogStrainViscoelastic::Parameters unit_viscoelasticity = {
+    ElasticConstants::from_young(0.5, 0.3), {{0.2, 0.1}, {0.1, 2.}}, 0.};
+
+  inline const LogStrainViscoelastic::Parameters unit_dashpots = {
+    unit_viscoelasticity.elasticity, unit_viscoelasticity.branches, 0.05};
+
   inline const std::vector<std::string> laws_that_yield = {
     "log-strain von Mises", "linear von Mises", "Jaumann von Mises"};
 
@@ -133,6 +149,10 @@ namespace impm
     for (const auto &law : laws_that_yield)
       for (const auto &hardening : all_hardenings())
         laws.push_back(listed_law(law, hardening, g, warm));
+    laws.push_back(make_law<Ogden>("Ogden", g, unit_rubber));
+    for (const auto &parameters : {unit_viscoelasticity, unit_dashpots})
+      laws.push_back(make_law<LogStrainViscoelastic>(
+        parameters.viscosity > 0 ? "dashpots" : "branches", g, parameters));
     return laws;
   }
 

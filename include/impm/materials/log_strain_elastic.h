@@ -62,6 +62,33 @@ namespace impm
     }
   };
 
+  /**
+   * A law of the total deformation: `respond` takes its principal strains,
+   * gives what goes with them (LogStrain::PrincipalStress) and returns psi.
+   * False when there is no stress.
+   */
+  template <typename Number, typename Respond>
+  bool
+  evaluate_elastic(const Material::BasicStep<Number> &step,
+                   const bool                         with_tangent,
+                   Material::BasicResponse<Number>   &response,
+                   const Respond                     &respond)
+  {
+    // b does not tell a body from its mirror image, J does
+    LogStrain::PrincipalStrains<Number> principal;
+    if (!all_of(dealii::determinant(step.total) > 0.) ||
+        !LogStrain::decompose(
+          dealii::Physics::Elasticity::Kinematics::b(step.total), principal))
+      return false;
+
+    LogStrain::PrincipalStress<Number> stress;
+    response.potential        = respond(principal.strain, stress);
+    response.kirchhoff_stress = LogStrain::compose(stress.stress, principal);
+    if (with_tangent)
+      LogStrain::lie_tangent(principal, stress, response.tangent);
+    return all_of(is_finite(response.potential));
+  }
+
   /** Hencky's elasticity from the total deformation; keeps no history. */
   class LogStrainElastic final : public LawInLanes<LogStrainElastic>
   {
@@ -79,19 +106,13 @@ namespace impm
                  const bool               with_tangent,
                  BasicResponse<Number>   &response) const
     {
-      // b does not tell a body from its mirror image, J does
-      LogStrain::PrincipalStrains<Number> principal;
-      if (!all_of(dealii::determinant(step.total) > 0.) ||
-          !LogStrain::decompose(
-            dealii::Physics::Elasticity::Kinematics::b(step.total), principal))
-        return false;
-
-      const auto stress         = elasticity.stress(principal.strain);
-      response.kirchhoff_stress = LogStrain::compose(stress.stress, principal);
-      response.potential        = elasticity.energy(principal.strain);
-      if (with_tangent)
-        LogStrain::lie_tangent(principal, stress, response.tangent);
-      return all_of(is_finite(response.potential));
+      return evaluate_elastic(step,
+                              with_tangent,
+                              response,
+                              [&](const auto &strain, auto &stress) {
+                                stress = elasticity.stress(strain);
+                                return elasticity.energy(strain);
+                              });
     }
 
     Energy

@@ -1,11 +1,7 @@
 #ifndef impm_materials_ogden_h
 #define impm_materials_ogden_h
 
-#include <deal.II/physics/elasticity/kinematics.h>
-
-#include <impm/materials/elastic_constants.h>
-#include <impm/materials/log_strain.h>
-#include <impm/materials/material.h>
+#include <impm/materials/log_strain_elastic.h>
 #include <impm/materials/number_list.h>
 
 #include <cmath>
@@ -120,19 +116,12 @@ namespace impm
                  const bool               with_tangent,
                  BasicResponse<Number>   &response) const
     {
-      // b does not tell a body from its mirror image, J does
-      LogStrain::PrincipalStrains<Number> principal;
-      if (!all_of(dealii::determinant(step.total) > 0.) ||
-          !LogStrain::decompose(
-            dealii::Physics::Elasticity::Kinematics::b(step.total), principal))
-        return false;
-
-      LogStrain::PrincipalStress<Number> stress;
-      response.potential = respond(principal.strain, with_tangent, stress);
-      response.kirchhoff_stress = LogStrain::compose(stress.stress, principal);
-      if (with_tangent)
-        LogStrain::lie_tangent(principal, stress, response.tangent);
-      return all_of(is_finite(response.potential));
+      return evaluate_elastic(step,
+                              with_tangent,
+                              response,
+                              [&](const auto &strain, auto &stress) {
+                                return respond(strain, with_tangent, stress);
+                              });
     }
 
     Energy

@@ -222,6 +222,9 @@ namespace impm
     dealii::Tensor<1, dim>
     increment_of(const ContactLink<dim> &link, const Vector &u) const;
 
+    /** Of friction, over that of the layer. */
+    static constexpr double friction_stiffness = 1. / 3;
+
     const double       weight; ///< of forces at the end of the step
     std::vector<State> states;
     std::vector<State> starts; ///< of the step

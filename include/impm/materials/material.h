@@ -160,8 +160,11 @@ namespace impm
       return Form::spatial;
     }
 
-    /** Whether the tangent of the forces is symmetric. */
-    bool
+    /**
+     * Whether the tangent of the forces is symmetric. A law whose flow does not
+     * derive from its yield function overrides it.
+     */
+    virtual bool
     has_symmetric_tangent() const
     {
       return form() != Form::full;

@@ -25,8 +25,8 @@ namespace impm
       {
         double smallest = std::numeric_limits<double>::max();
         for (unsigned int e = cell.begin; e < cell.end; ++e)
-          smallest = std::min(smallest,
-                              points.material(footprints.point[e]).stiffness());
+          smallest =
+            std::min(smallest, points.remaining_stiffness(footprints.point[e]));
         const unsigned int layer = discretization.layer(cell.nodes[0]);
         stiffness[layer][cell.cell->active_cell_index()] = smallest;
         if (cell.cell->is_locally_owned())

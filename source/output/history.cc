@@ -51,6 +51,7 @@ namespace impm
              const double         start_kinetic_energy,
              const double         energy_gain,
              const double         drift,
+             const bool           may_fail,
              const Figures       &of_contact,
              const Figures       &figures)
     {
@@ -111,6 +112,10 @@ namespace impm
                   {"pieces", report.pieces},
                   {"flow_share", report.flow_share},
                   {"step_error", report.step_error}});
+      if (may_fail)
+        row.insert(row.end(),
+                   {{"failed_points", report.failed_points},
+                    {"failed_volume", report.failed_volume}});
       if (!of_contact.empty())
         row.insert(row.end(),
                    {{"contact_work", report.contact_work},
@@ -220,8 +225,18 @@ namespace impm
     for (const auto &pair : scene.contact.pairs)
       append(pair.name, {}, of_contact);
     std::vector<std::string> names;
-    for (const auto &column : make_row<dim>(
-           scene.geometry, {}, 0, {}, {}, 0, 0, 0, of_contact, figures))
+    for (const auto &column :
+         make_row<dim>(scene.geometry,
+                       {},
+                       0,
+                       {},
+                       {},
+                       0,
+                       0,
+                       0,
+                       scene.history->find("failed").has_value(),
+                       of_contact,
+                       figures))
       names.push_back(column.first);
     return names;
   }
@@ -375,6 +390,7 @@ namespace impm
                               start_kinetic_energy,
                               budget.gain,
                               drift,
+                              points.history_layout.find("failed").has_value(),
                               of_contact,
                               figures);
     std::ostringstream line;

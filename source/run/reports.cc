@@ -2,6 +2,7 @@
 #include <impm/balance/terms/loads.h>
 #include <impm/footprints/pieces.h>
 #include <impm/output/summary.h>
+#include <impm/run/failed_points.h>
 #include <impm/run/plastic_flow.h>
 #include <impm/run/simulation.h>
 #include <impm/solve/linear_solver_choice.h>
@@ -96,6 +97,7 @@ namespace impm
                                {"grid_resets", total.grid_resets},
                                {"unstable_equilibria", total.unstable},
                                {"damped_steps", total.damped},
+                               {"failed_points", total.failed_points},
                                {"stress_evaluations",
                                 Utilities::MPI::sum(counts.stress_evaluations,
                                            communicator)},
@@ -287,6 +289,27 @@ namespace impm
 
   template <int dim>
   void
+  Simulation<dim>::watch_failed_points()
+  {
+    const auto failed = failed_points(points);
+    for (unsigned int b = 0; b < failed.size(); ++b)
+      {
+        report.failed_points += failed[b].n;
+        report.failed_volume += failed[b].volume;
+        if (failed[b].n == 0)
+          continue;
+        std::ostringstream text;
+        text << std::setprecision(3) << "body '" << scene.bodies[b].name
+             << "' has begun to fail at t = " << time << " s: " << failed[b].n
+             << " points, about " << failed[b].place
+             << " m, have lost their stress; where failure runs, and what it "
+                "takes, depends on the size of cells";
+        warn("failure of " + scene.bodies[b].name, text.str());
+      }
+  }
+
+  template <int dim>
+  void
   Simulation<dim>::write_row()
   {
     history.write(since_row);
@@ -384,6 +407,10 @@ namespace impm
   Simulation<2>::watch_flow();
   template void
   Simulation<3>::watch_flow();
+  template void
+  Simulation<2>::watch_failed_points();
+  template void
+  Simulation<3>::watch_failed_points();
   template void
   Simulation<2>::write_row();
   template void

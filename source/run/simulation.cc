@@ -386,6 +386,7 @@ namespace impm
              " (a motion that sets in at once, or a 'Smallest time step' that "
              "is too large)");
     commit();
+    watch_failed_points();
     control.accept(figures, !jump.is_on());
     jump.end_step(off_grid.in_cells, control.step_size() >= scene.time.step);
     report.time         = time;

@@ -205,6 +205,13 @@ namespace impm
       return scale;
     }
 
+    /** What a point has left of it, which may have failed (Pa, above 0). */
+    virtual double
+    remaining_stiffness(const double * /*history*/) const
+    {
+      return scale;
+    }
+
     /** Speed of longitudinal elastic waves (m/s). */
     double
     wave_speed() const

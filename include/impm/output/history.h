@@ -37,9 +37,11 @@ namespace impm
     unsigned int unstable = 0; ///< steps from an equilibrium that is not stable
     unsigned int damped   = 0; ///< steps that end in none
     unsigned int pieces   = 0; ///< of all bodies, if counted
-    double       flow_share = 1; ///< smallest of any body, see PlasticFlow
-    double       step_error = 0; ///< over the allowed one, if it is estimated
-    double       imbalance  = 1; ///< cost of the busiest rank over the mean
+    double       flow_share     = 1; ///< smallest of any body, see PlasticFlow
+    unsigned long failed_points = 0; ///< of all bodies, see FailingLaw
+    double        failed_volume = 0; ///< of theirs, initial (m^3)
+    double        step_error = 0; ///< over the allowed one, if it is estimated
+    double        imbalance  = 1; ///< cost of the busiest rank over the mean
     /** Since the start, gained where points were split or merged (J). */
     double resampling_kinetic_energy = 0, resampling_internal_energy = 0;
     double wall_seconds = 0; ///< since the start
@@ -57,9 +59,9 @@ namespace impm
           &held_cells &limited_boxes &active_cells &dofs &residual
             &external_work &internal_work &stabilization_work &uncertain_work
               &splits &merges &grid_resets &unstable &damped &pieces &flow_share
-                &resampling_kinetic_energy &resampling_internal_energy
-                  &step_error &imbalance &wall_seconds &contact_work
-                    &smallest_gap;
+                &failed_points &failed_volume &resampling_kinetic_energy
+                  &resampling_internal_energy &step_error &imbalance
+                    &wall_seconds &contact_work &smallest_gap;
     }
   };
 

@@ -147,6 +147,13 @@ namespace impm
       return *materials[body(point)];
     }
 
+    /** See Material::remaining_stiffness(). */
+    double
+    remaining_stiffness(const unsigned int point) const
+    {
+      return material(point).remaining_stiffness(data[point] + offset_history);
+    }
+
     /** Rigid ones, which have no such points, included. */
     unsigned int
     n_bodies() const

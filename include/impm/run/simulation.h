@@ -184,6 +184,11 @@ namespace impm
     void
     watch_flow();
 
+    /** Counts the points that have failed, and tells of the first ones of a
+     * body. Collective. */
+    void
+    watch_failed_points();
+
     /** Warns of prescribed faces that have lost their material. Collective. */
     void
     watch_faces();

@@ -101,7 +101,7 @@ namespace impm
           for (unsigned int e = cell.begin; e < cell.end; ++e)
             sum += factor * footprints.weight[e] *
                    points.initial_volume(footprints.point[e]) *
-                   points.material(footprints.point[e]).stiffness() /
+                   points.remaining_stiffness(footprints.point[e]) /
                    (cell.extent * cell.extent);
           for (const unsigned int node : cell.nodes)
             for (unsigned int c = 0; c < dim; ++c)

@@ -64,8 +64,8 @@ namespace impm
                   "Fields of the points; those that this scene does not have "
                   "are left out.",
                   "velocity, cauchy_stress, von_mises_stress, "
-                  "equivalent_plastic_strain, deformation_gradient, volume, "
-                  "body, id");
+                  "equivalent_plastic_strain, damage, deformation_gradient, "
+                  "volume, body, id");
       if (!output.pictures)
         output.point_fields.clear();
       for (const auto &field : output.point_fields)

@@ -3,6 +3,7 @@
 
 #include <deal.II/base/parameter_handler.h>
 
+#include <impm/materials/failure.h>
 #include <impm/materials/list.h>
 #include <impm/materials/log_strain_elastic.h>
 #include <impm/materials/log_strain_viscoelastic.h>
@@ -43,12 +44,13 @@ namespace impm
 
   using Entries = std::map<std::string, std::string>;
 
-  /** A law of the program, from its entries; elasticity is the unit one. */
-  inline NamedLaw
-  listed_law(const std::string  &name,
-             const Entries      &entries,
-             const GeometryKind  geometry = GeometryKind::three_d,
-             const MaterialSpec &spec     = {1.})
+  /** A law of the program, from its entries, which adds to a history;
+   * elasticity is the unit one. */
+  inline std::unique_ptr<const Material>
+  make_listed(const std::string  &name,
+              const Entries      &entries,
+              const MaterialSpec &spec,
+              PointLayout        &history)
   {
     const auto &list = material_list();
     const auto law = std::find_if(list.begin(), list.end(), [&](const auto &l) {
@@ -64,12 +66,39 @@ namespace impm
     prm.set("Young's modulus", "1");
     for (const auto &[entry, value] : entries)
       prm.set(entry, value);
-    PointLayout                     history(geometry);
-    std::shared_ptr<const Material> material  = law->create(prm, spec, history);
-    const auto                      hardening = entries.find("Hardening");
+    return law->create(prm, spec, history);
+  }
+
+  inline NamedLaw
+  listed_law(const std::string  &name,
+             const Entries      &entries,
+             const GeometryKind  geometry = GeometryKind::three_d,
+             const MaterialSpec &spec     = {1.})
+  {
+    PointLayout                           history(geometry);
+    const std::shared_ptr<const Material> material =
+      make_listed(name, entries, spec, history);
+    const auto hardening = entries.find("Hardening");
     return {hardening == entries.end() ? name : name + ", " + hardening->second,
             material,
             history};
+  }
+
+  /** Logarithmic strains and von Mises, of points that fail. */
+  inline NamedLaw
+  failing_law(const Entries       &entries,
+              const FailureStrain &failure_strain,
+              const double         remaining_share,
+              const GeometryKind   geometry = GeometryKind::three_d,
+              const std::string   &law      = "log-strain von Mises")
+  {
+    PointLayout history(geometry);
+    auto        whole    = make_listed(law, entries, {1.}, history);
+    const auto  material = std::make_shared<FailingLaw>(std::move(whole),
+                                                       history,
+                                                       failure_strain,
+                                                       remaining_share);
+    return {law + " that fails", material, history};
   }
 
   /** Hardenings that yield early, in units of Young's modulus. */
@@ -149,6 +178,12 @@ namespace impm
     for (const auto &law : laws_that_yield)
       for (const auto &hardening : all_hardenings())
         laws.push_back(listed_law(law, hardening, g, warm));
+    for (const auto &law : laws_that_yield)
+      laws.push_back(failing_law({{"Yield stress", "0.01"}},
+                                 FailureStrain{0.03, 0.2, -1., 0.1},
+                                 0.1,
+                                 g,
+                                 law));
     laws.push_back(make_law<Ogden>("Ogden", g, unit_rubber));
     for (const auto &parameters : {unit_viscoelasticity, unit_dashpots})
       laws.push_back(make_law<LogStrainViscoelastic>(

@@ -11,6 +11,8 @@
 #include <impm/materials/neo_hookean.h>
 #include <impm/materials/newtonian_fluid.h>
 #include <impm/materials/ogden.h>
+#include <impm/materials/soil/cam_clay.h>
+#include <impm/materials/soil/frictional_law.h>
 
 namespace impm
 {
@@ -46,6 +48,16 @@ namespace impm
                                              history,
                                              Parameters::from_parameters(prm));
               }};
+    }
+
+    /** A law of soil, which tears rather than be a sheet. */
+    template <typename Law>
+    MaterialEntry
+    soil(const std::string &name)
+    {
+      auto entry         = law<Law, typename Law::Parameters>(name);
+      entry.makes_sheets = false;
+      return entry;
     }
 
     /** The name of the hardening and the entries of that one alone. */
@@ -115,6 +127,9 @@ namespace impm
       law_that_yields<LinearLaw>("linear von Mises"),
       law<JaumannLaw<NoYield>, ElasticConstants>("Jaumann elastic"),
       law_that_yields<JaumannLaw>("Jaumann von Mises"),
+      soil<FrictionalLaw<DruckerPrager>>("log-strain Drucker-Prager"),
+      soil<FrictionalLaw<MohrCoulomb>>("log-strain Mohr-Coulomb"),
+      soil<CamClay>("modified Cam-clay"),
       law<NewtonianFluid, NewtonianFluid::Parameters>("Newtonian fluid")};
     return list;
   }

@@ -36,6 +36,10 @@ namespace impm
       create;
 
     bool locks = false; ///< flows without change of volume: F-bar by default
+
+    /** Whether it may be a sheet in plane stress: not where the stress across
+     * can stand still while the thickness changes. */
+    bool makes_sheets = true;
   };
 
   /** Every law of the program; a new one is added here. */

@@ -43,6 +43,17 @@ namespace impm
                std::numeric_limits<double>::quiet_NaN();
     }
 
+    /** Principal strains of principal stresses (Pa). */
+    std::array<double, 3>
+    strain(const std::array<double, 3> &stress) const
+    {
+      const double          mean = (stress[0] + stress[1] + stress[2]) / 3.;
+      std::array<double, 3> result;
+      for (unsigned int a = 0; a < 3; ++a)
+        result[a] = mean / (3. * bulk) + (stress[a] - mean) / (2. * shear);
+      return result;
+    }
+
     /** tau_a and what goes with them, of principal strains. */
     template <typename Number>
     LogStrain::PrincipalStress<Number>

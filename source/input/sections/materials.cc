@@ -10,15 +10,20 @@ namespace impm
   namespace
   {
     void
-    check_law(const Section     &section,
-              const Material    &material,
-              const GeometryKind geometry)
+    check_law(const Section       &section,
+              const MaterialEntry &law,
+              const Material      &material,
+              const GeometryKind   geometry)
     {
       const bool plane_stress = geometry == GeometryKind::plane_stress;
       if (plane_stress && !material.is_solid())
         section.refuse("Law",
                        "allowed in plane stress are laws of solids: "
                        "nothing holds the thickness of a fluid");
+      if (plane_stress && !law.makes_sheets)
+        section.refuse("Law",
+                       "allowed in plane stress are laws that bear tension: a "
+                       "soil that tears holds no thickness");
       if (!material.average_volume)
         return;
       if (plane_stress)
@@ -30,6 +35,11 @@ namespace impm
                        "allowed with the law '" + section.get("Law") +
                          "' is false: the average is a derivative of the "
                          "energy of F, which this law does not have");
+      if (!material.has_symmetric_tangent())
+        section.refuse("F-bar",
+                       "allowed with the law '" + section.get("Law") +
+                         "' is false, unless its flow is associated: the "
+                         "average needs a symmetric tangent");
     }
 
     struct FailureSpec
@@ -185,7 +195,7 @@ namespace impm
       section.inside(
         [&](auto &prm) { spec.density = prm.get_double("Density"); });
       const auto material = make_material(section, law, spec, failure, history);
-      check_law(section, *material, history.geometry);
+      check_law(section, law, *material, history.geometry);
       return material;
     }
 

@@ -10,6 +10,7 @@
 #include <impm/materials/neo_hookean.h>
 #include <impm/materials/newtonian_fluid.h>
 #include <impm/materials/ogden.h>
+#include <impm/materials/soil/cam_clay.h>
 
 #include <algorithm>
 #include <map>
@@ -199,11 +200,36 @@ namespace impm
                                     NewtonianFluid::Parameters{K, mu, lambda});
   }
 
+  /** Soils of the unit elasticity, whose flow is associated or not. */
+  inline std::vector<NamedLaw>
+  all_soils(const GeometryKind g = GeometryKind::three_d)
+  {
+    std::vector<NamedLaw> laws;
+    for (const std::string name :
+         {"log-strain Drucker-Prager", "log-strain Mohr-Coulomb"})
+      for (const bool associated : {true, false})
+        {
+          Entries entries = {{"Cohesion", "0.01"},
+                             {"Dilation angle", associated ? "30" : "10"}};
+          if (!associated)
+            entries["Tension cut-off"] = "0.005";
+          laws.push_back(listed_law(name, entries, g));
+          laws.back().name += associated ? ", associated" : ", cut off";
+        }
+    laws.push_back(
+      make_law<CamClay>("modified Cam-clay",
+                        g,
+                        CamClay::Parameters{0.3, 0.35, 0.3, 0.6, 0.4, 1.}));
+    return laws;
+  }
+
   inline std::vector<NamedLaw>
   all_laws()
   {
     auto laws = all_solids();
     laws.push_back(fluid_law(1., 0.3, -0.1));
+    for (const auto &law : all_soils())
+      laws.push_back(law);
     return laws;
   }
 

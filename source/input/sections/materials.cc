@@ -21,11 +21,12 @@ namespace impm
         section.refuse("F-bar",
                        "allowed in plane stress is false: there the "
                        "thickness keeps the volume, nothing locks");
-      if (material.form() != Material::Form::spatial)
+      if (material.form() == Material::Form::linearized)
         section.refuse("F-bar",
                        "allowed with the law '" + section.get("Law") +
-                         "' is false: the average is a derivative of the "
-                         "energy of F, which this law does not have");
+                         "' is false: its forces act on the body as it is at "
+                         "the start of a step; allowed is the average with the "
+                         "laws 'Jaumann ...' or 'log-strain ...'");
     }
 
     std::shared_ptr<const Material>

@@ -39,6 +39,10 @@ namespace impm
     jacobian.resize(groups.size());
     mean.resize(groups.size() * kinematics.size);
     coupling.resize(groups.size() * kinematics.size);
+    if (!points.all_materials([](const Material &material) {
+          return !material.average_volume || material.has_symmetric_tangent();
+        }))
+      left_coupling.resize(coupling.size());
     square.resize(groups.size());
     group_volume.resize(group_of.size());
     for (unsigned int q = 0; q < groups.size(); ++q)
@@ -121,36 +125,52 @@ namespace impm
       {
         using List = typename Kinematics<dim>::template List<Lanes>;
         // K is `matrix`.
-        const auto e = kinematics.list(unit_symmetric_tensor<3>());
-        const auto t = kinematics.list(tau);
-        List       Ke{};
+        const bool symmetric = left_coupling.empty();
+        const auto e         = kinematics.list(unit_symmetric_tensor<3>());
+        const auto t         = kinematics.list(tau);
+        List       Ke{}, eK{};
         Lanes      eKe = 0.;
         for (unsigned int a = 0; a < n_g; ++a)
           {
             for (unsigned int b = 0; b < n_g; ++b)
               Ke[a] += matrix[a * n_g + b] * e[b];
+            for (unsigned int b = 0; b < n_g && !symmetric; ++b)
+              eK[a] += e[b] * matrix[b * n_g + a];
             eKe += e[a] * Ke[a];
           }
+        if (symmetric)
+          eK = Ke;
         // A = (1 - ee/n) K (1 - ee/n) - (te + et)/n + pi/n ee + pi X, where
-        // g.X.h = tr(g h); then b and c of the class.
-        List b{};
+        // g.X.h = tr(g h); then b, b' and c of the class.
+        const auto coupling_by = [&](const List &changes) {
+          List b{};
+          for (unsigned int k = 0; k < n_g; ++k)
+            b[k] =
+              changes[k] / n - eKe / (n * n) * e[k] + t[k] / n - pi / n * e[k];
+          return b;
+        };
         for (unsigned int k = 0; k < n_g; ++k)
-          {
-            for (unsigned int l = 0; l < n_g; ++l)
-              matrix[k * n_g + l] += -(Ke[k] * e[l] + e[k] * Ke[l]) / n +
-                                     eKe / (n * n) * (e[k] * e[l]) -
-                                     (t[k] * e[l] + e[k] * t[l]) / n +
-                                     pi / n * (e[k] * e[l]);
-            b[k] = Ke[k] / n - eKe / (n * n) * e[k] + t[k] / n - pi / n * e[k];
-          }
+          for (unsigned int l = 0; l < n_g; ++l)
+            matrix[k * n_g + l] += -(Ke[k] * e[l] + e[k] * eK[l]) / n +
+                                   eKe / (n * n) * (e[k] * e[l]) -
+                                   (t[k] * e[l] + e[k] * t[l]) / n +
+                                   pi / n * (e[k] * e[l]);
         for (unsigned int i = 0; i < dim; ++i)
           for (unsigned int j = 0; j < dim; ++j)
             matrix[(dim * i + j) * n_g + dim * j + i] += pi;
         if (kinematics.axisymmetric)
           matrix[n_g * n_g - 1] += pi;
         List carried;
-        kinematics.carry_back(b, inverse, volume, carried.data());
+        kinematics.carry_back(coupling_by(Ke), inverse, volume, carried.data());
         batch.store(carried.data(), coupling, n_g);
+        if (!symmetric)
+          {
+            kinematics.carry_back(coupling_by(eK),
+                                  inverse,
+                                  volume,
+                                  carried.data());
+            batch.store(carried.data(), left_coupling, n_g);
+          }
         batch.scatter(volume * (eKe / (n * n) + pi / n - pi),
                       [&](const double value, const unsigned int p) {
                         square[p] = value;
@@ -218,11 +238,14 @@ namespace impm
     by_coupling.assign(group_volume.size(), 0.);
     for (unsigned int p = 0; p < groups.size(); ++p)
       if (includes(p))
-        for (unsigned int a = p * n_g; a < (p + 1) * n_g; ++a)
-          {
-            by_mean[groups[p]] += mean[a] * gradient_changes[a];
-            by_coupling[groups[p]] += coupling[a] * gradient_changes[a];
-          }
+        {
+          const double *left = left_of(p), *change = &gradient_changes[p * n_g];
+          for (unsigned int a = 0; a < n_g; ++a)
+            {
+              by_mean[groups[p]] += mean[p * n_g + a] * change[a];
+              by_coupling[groups[p]] += left[a] * change[a];
+            }
+        }
     for (unsigned int p = 0; p < groups.size(); ++p)
       if (includes(p))
         {

@@ -11,6 +11,7 @@
 #include <impm/materials/neo_hookean.h>
 #include <impm/materials/newtonian_fluid.h>
 #include <impm/materials/ogden.h>
+#include <impm/materials/orthotropic_elastic.h>
 #include <impm/materials/soil/cam_clay.h>
 #include <impm/materials/soil/frictional_law.h>
 
@@ -123,6 +124,7 @@ namespace impm
       law<Ogden, MooneyRivlin>("Mooney-Rivlin"),
       law<LogStrainViscoelastic, LogStrainViscoelastic::Parameters>(
         "log-strain viscoelastic"),
+      law<OrthotropicElastic, OrthotropicConstants>("orthotropic elastic"),
       law<LinearLaw<NoYield>, ElasticConstants>("linear elastic"),
       law_that_yields<LinearLaw>("linear von Mises"),
       law<JaumannLaw<NoYield>, ElasticConstants>("Jaumann elastic"),

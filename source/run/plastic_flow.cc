@@ -1,5 +1,6 @@
 #include <impm/run/plastic_flow.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace impm
@@ -60,6 +61,30 @@ namespace impm
     return result;
   }
 
-  template decltype(plastic_flow<2>) plastic_flow<2>;
-  template decltype(plastic_flow<3>) plastic_flow<3>;
+  template <int dim>
+  std::vector<double>
+  softening_shares(const MaterialPoints<dim> &points,
+                   const PointResponse<dim>  &response)
+  {
+    const unsigned int  n = points.n_bodies();
+    std::vector<double> volumes(2 * n); // of what softens, of all
+    for (unsigned int p = 0; p < points.size(); ++p)
+      {
+        const double V = points.initial_volume(p);
+        if (points.material(p).softens(points.fields(p) + points.offset_history,
+                                       response.trial_history(p)))
+          volumes[points.body(p)] += V;
+        volumes[n + points.body(p)] += V;
+      }
+    Utilities::MPI::sum(volumes, points.communicator, volumes);
+    for (unsigned int b = 0; b < n; ++b)
+      volumes[b] /= std::max(volumes[n + b], 1e-300);
+    volumes.resize(n);
+    return volumes;
+  }
+
+  template decltype(plastic_flow<2>)     plastic_flow<2>;
+  template decltype(plastic_flow<3>)     plastic_flow<3>;
+  template decltype(softening_shares<2>) softening_shares<2>;
+  template decltype(softening_shares<3>) softening_shares<3>;
 } // namespace impm

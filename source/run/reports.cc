@@ -310,6 +310,27 @@ namespace impm
 
   template <int dim>
   void
+  Simulation<dim>::watch_softening()
+  {
+    if (jump.is_on() || points.history_size() == 0)
+      return;
+    const auto shares = softening_shares(points, problem->response);
+    for (unsigned int b = 0; b < shares.size(); ++b)
+      if (shares[b] > 0)
+        {
+          std::ostringstream text;
+          text << std::setprecision(3) << "body '" << scene.bodies[b].name
+               << "' softens, at t = " << time + report.dt << " s in "
+               << 100 * shares[b]
+               << " % of its volume: its yield stress falls as it flows. The "
+                  "flow gathers in a band as wide as a cell, so that forces "
+                  "and work from here on depend on the size of the cells";
+          warn("softening of " + scene.bodies[b].name, text.str());
+        }
+  }
+
+  template <int dim>
+  void
   Simulation<dim>::write_row()
   {
     history.write(since_row);
@@ -406,7 +427,11 @@ namespace impm
   template void
   Simulation<2>::watch_flow();
   template void
+  Simulation<2>::watch_softening();
+  template void
   Simulation<3>::watch_flow();
+  template void
+  Simulation<3>::watch_softening();
   template void
   Simulation<2>::watch_failed_points();
   template void

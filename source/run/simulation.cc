@@ -376,6 +376,7 @@ namespace impm
       {
         watch_pieces();
         watch_flow();
+        watch_softening();
       }
     report.damped     = jump.is_on();
     report.step_error = figures.error;

@@ -19,13 +19,16 @@ namespace impm
    *   theta  = sum_p v_p dJ_p / sum_p v_p,   v_p = V0_p J_p at t_n,
    *
    * so that constant pressure can be had from linear displacements (de Souza
-   * Neto et al. 1996). Stress and tangent derive from the energy of dF_bar:
-   * they are symmetric and couple nothing beyond the cell. n is 2 in plane
-   * strain, else 3; with e the list of the unit tensor (in the n directions)
-   * and m_p = (v_p dJ_p / sum v dJ) dF_p^-T,
+   * Neto et al. 1996). Stresses are those of the virtual work of tau(dF_bar) on
+   * variations of dF_bar, which is that of the energy where there is one: they
+   * couple nothing beyond the cell. n is 2 in plane strain, else 3; with
+   * m_p = (v_p dJ_p / sum v dJ) dF_p^-T,
    *
-   *   d ln theta = sum_p m_p . g_p for gradients g of a variation,
-   *   d2 W       = sum_p (A_p g . g + 2 (b_p . g) s + c_p s^2), s = d ln theta.
+   *   s_g = d ln theta = sum_p m_p . g_p for gradients g of a variation,
+   *   d (d W)(h) = sum_p (h . A_p g + (b_p . h) s_g + (b'_p . g) s_h +
+   *                       c_p s_g s_h),
+   *
+   * where b' = b if the tangent of the law is symmetric.
    */
   template <int dim>
   class VolumeAverage
@@ -98,7 +101,8 @@ namespace impm
     std::size_t
     memory_consumption() const
     {
-      return bytes_of(groups, mean, coupling, square, start_volume, jacobian);
+      return bytes_of(
+        groups, mean, coupling, left_coupling, square, start_volume, jacobian);
     }
 
     /** By point: the number of its group, or an invalid one; empty if none. */
@@ -106,6 +110,16 @@ namespace impm
 
     /** m_p and b_p, with the size of a gradient for each point. */
     std::vector<double> mean, coupling;
+    std::vector<double> left_coupling; ///< b'_p, empty where all are b_p
+
+    /** b'_p of a point. */
+    const double *
+    left_of(const unsigned int point) const
+    {
+      return &(left_coupling.empty() ? coupling :
+                                       left_coupling)[point * kinematics.size];
+    }
+
     std::vector<double> square;       ///< c_p
     std::vector<double> group_square; ///< sum of c_p over the group
 

@@ -82,6 +82,12 @@ namespace impm
     }
 
     bool
+    softens(const double *start, const double *end) const override
+    {
+      return law->softens(start, end);
+    }
+
+    bool
     is_solid() const override
     {
       return law->is_solid();

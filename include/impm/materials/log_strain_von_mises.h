@@ -155,6 +155,13 @@ namespace impm
       return all_of(is_finite(response.potential));
     }
 
+    bool
+    softens(const double *start, const double *end) const override
+    {
+      return has_fallen(hardening.yield_stress(start),
+                        hardening.yield_stress(end));
+    }
+
     Material::Energy
     energy(const dealii::Tensor<2, 3> &, const double *history) const override
     {

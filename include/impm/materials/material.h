@@ -149,6 +149,16 @@ namespace impm
              bool         with_tangent,
              Responses   &responses) const = 0;
 
+    /**
+     * Whether a point has lost strength by flowing, from the history at the
+     * start of a step to that at its end: strain then gathers in a band.
+     */
+    virtual bool
+    softens(const double * /*start*/, const double * /*end*/) const
+    {
+      return false;
+    }
+
     /** Energy in the state (F, history) at the end of a step. */
     virtual Energy
     energy(const dealii::Tensor<2, 3> &deformation_gradient,

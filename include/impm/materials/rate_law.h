@@ -20,6 +20,12 @@ namespace impm
     {}
 
     double
+    yield_stress(const double *) const
+    {
+      return 0;
+    }
+
+    double
     work(const double *) const
     {
       return 0;
@@ -48,6 +54,13 @@ namespace impm
       , stress_field(history, "cauchy_stress")
       , hardening(spec, history, parameters)
     {}
+
+    bool
+    softens(const double *start, const double *end) const override
+    {
+      return has_fallen(hardening.yield_stress(start),
+                        hardening.yield_stress(end));
+    }
 
     Energy
     energy(const dealii::Tensor<2, 3> &deformation_gradient,

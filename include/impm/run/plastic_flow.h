@@ -23,6 +23,13 @@ namespace impm
   std::vector<PlasticFlow<dim>>
   plastic_flow(const MaterialPoints<dim> &points,
                const PointResponse<dim>  &response);
+
+  /** Of the volume of each body, the share that softens in a step that is
+   * solved. Collective. */
+  template <int dim>
+  std::vector<double>
+  softening_shares(const MaterialPoints<dim> &points,
+                   const PointResponse<dim>  &response);
 } // namespace impm
 
 #endif

@@ -189,6 +189,10 @@ namespace impm
     void
     watch_failed_points();
 
+    /** Tells when a body begins to soften. Collective. */
+    void
+    watch_softening();
+
     /** Warns of prescribed faces that have lost their material. Collective. */
     void
     watch_faces();

@@ -173,7 +173,8 @@ namespace impm
     const unsigned int first   = prints.patch_points[patch.begin_points];
     if (!average.includes(first))
       return;
-    // F-bar: nodal forces of the mean dilation and of what it does.
+    // F-bar: nodal forces of the mean dilation and of what it does; `answer`
+    // and `dilation` take increments, the others give forces.
     const unsigned int     n        = matrix.m();
     const unsigned int     n_filled = filled_up(n / dim);
     dealii::Vector<double> dilation(n), answer(n), dilating(n), answering(n);
@@ -188,6 +189,7 @@ namespace impm
             forces[dim * l] += list[dim * dim] * hoops[l];
         }
     };
+    const bool is_skew = !average.left_coupling.empty();
     for (unsigned int i = patch.begin_points; i < patch.end_points; ++i)
       {
         const unsigned int p = prints.patch_points[i];
@@ -195,17 +197,20 @@ namespace impm
         const double      *b = &average.coupling[p * n_gradients];
         place_on_patch(p, n_filled);
         add(m, dilation);
-        add(b, answer);
+        add(average.left_of(p), answer);
         if (response.acts_in_the_middle)
           {
             add(response.turn(p, m).data(), dilating);
             add(response.turn(p, b).data(), answering);
           }
+        else if (is_skew)
+          add(b, answering);
       }
     if (!response.acts_in_the_middle)
       {
-        dilating  = dilation;
-        answering = answer;
+        dilating = dilation;
+        if (!is_skew)
+          answering = answer;
       }
     const double square = average.group_square[average.groups[first]];
     for (unsigned int i = 0; i < n; ++i)

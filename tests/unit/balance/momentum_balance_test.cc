@@ -338,6 +338,70 @@ TEST(MomentumBalanceMpi, DerivativesWithMeanVolume)
 }
 
 
+// Laws without a potential: what couples the points of a cell is not symmetric.
+TEST(MomentumBalanceMpi, DerivativesWithMeanVolumeOfRateLaws)
+{
+  const std::string law      = "Materials/rubber/Law=";
+  const Overrides   elastic  = {law + "Jaumann elastic"},
+                  yields     = plastic + Overrides{law + "Jaumann von Mises"},
+                  middle     = {"Time/Integrator=energy-momentum",
+                                "Time/Time step=0.3",
+                                "Bodies/block/Velocity=0.01*y; 0.02"},
+                  coarse     = {"Grid/Cells=2, 2, 2"},
+                  stiff_bulk = {"Materials/rubber/Bulk modulus=30"};
+  for (const std::string kind : {"plane strain", "axisymmetric"})
+    {
+      check<2>(kind, elastic + f_bar + refined, 0.015);
+      check<2>(kind, yields + f_bar + boxes, 0.01);
+      check<2>(kind, yields + f_bar + middle, 0.01);
+      const auto fluid = fluid_scene(kind);
+      check_scene<2>(fluid, "fluid", f_bar + refined, 0.01);
+      check_scene<2>(fluid, "fluid", f_bar + boxes + stiff_bulk, 0.01);
+      check_scene<2>(fluid, "fluid", f_bar + trapezoidal, 0.01);
+    }
+  check<3>("3D", yields + f_bar + coarse, 0.02);
+  check_scene<3>(fluid_scene("3D"), "fluid", f_bar + boxes + coarse, 0.01);
+}
+
+
+// Forces on the moved body have no moment: P dF^T is symmetric at every point.
+TEST(MomentumBalanceMpi, MeanVolumeKeepsAngularMomentum)
+{
+  const std::string law = "Materials/rubber/Law=";
+  for (const auto &text : {block_scene("plane strain"),
+                           block_scene("axisymmetric"),
+                           fluid_scene("plane strain"),
+                           fluid_scene("axisymmetric")})
+    {
+      const bool flows = text.find("fluid") != std::string::npos;
+      Model<2>   model(text,
+                     f_bar + boxes + Overrides{"Time/Time step=0.3"} +
+                       (flows ? Overrides{} :
+                                  Overrides{law + "Jaumann elastic"}));
+      model.scatter_points(1);
+      model.begin_step();
+      const Vector u = model.random_increment(1, 0.02);
+      ASSERT_TRUE(model.balance().evaluate(u).admissible);
+      const auto        &response = model.problem->response;
+      const unsigned int n        = response.kinematics.size;
+      double             largest = 0, difference = 0;
+      for (unsigned int p = 0; p < model.points.size(); ++p)
+        {
+          const auto dF =
+            response.kinematics.deformation(&response.gradients[p * n]);
+          Tensor<2, 3> P;
+          for (unsigned int i = 0; i < 2; ++i)
+            for (unsigned int j = 0; j < 2; ++j)
+              P[i][j] = response.stresses[p * n + 2 * i + j];
+          const auto moved = P * transpose(dF);
+          largest          = std::max(largest, moved.norm());
+          difference = std::max(difference, (moved - transpose(moved)).norm());
+        }
+      EXPECT_LT(difference, 1e-14 * largest);
+    }
+}
+
+
 TEST(MomentumBalanceMpi, DerivativesWithNewmark)
 {
   Overrides newmark = {"Time/Integrator=Newmark",

@@ -300,6 +300,10 @@ TEST(PatchMpi, UniformStrainOnRegularPoints)
   patch_test("plane strain", decoupled + refined, gradient, false);
   patch_test("plane strain", linear + refined, gradient, false);
   patch_test("plane strain", jaumann + refined, gradient, false);
+  patch_test("plane strain",
+             jaumann + refined + Overrides{"Materials/rubber/F-bar=true"},
+             gradient,
+             false);
   patch_test("3D",
              neo_hookean + Overrides{"Grid/Cells=2, 2, 2"},
              some_gradient<3>(),
@@ -349,6 +353,10 @@ TEST(PatchMpi, UniformStrainOfFiniteElements)
   patch_test("plane strain", skew + plastic, gradient, false);
   patch_test("plane strain",
              skew + decoupled + Overrides{"Materials/rubber/F-bar=true"},
+             gradient,
+             false);
+  patch_test("plane strain",
+             skew + jaumann + Overrides{"Materials/rubber/F-bar=true"},
              gradient,
              false);
   patch_test("plane strain",
@@ -419,6 +427,9 @@ TEST(RigidRotationMpi, OfAStressedBody)
   rotate<2>("plane strain", {"Stabilization/Ghost penalty=0.5"}, true);
   rotate<2>("plane strain", refined, true);
   rotate<2>("plane strain", jaumann + refined, true);
+  rotate<2>("plane strain",
+            jaumann + refined + Overrides{"Materials/rubber/F-bar=true"},
+            true);
   rotate<2>("plane stress", refined, true);
   rotate<3>("3D", refined, true);
   rotate<3>("3D", jaumann + refined, true);

@@ -210,10 +210,10 @@ TEST(Scene, LawsThatDoNotFit)
                "Solver/Linear solver",
                {"'CG'", "symmetric", "'block'", "GMRES"});
   const Overrides f_bar = {"Materials/rubber/F-bar=true"};
-  for (const std::string law : {"Jaumann elastic", "linear elastic"})
-    expect_blame(f_bar + Overrides{"Materials/rubber/Law=" + law},
-                 "Materials/rubber/F-bar",
-                 {"'true'", law, "energy"});
+  expect_blame(f_bar + Overrides{"Materials/rubber/Law=linear elastic"},
+               "Materials/rubber/F-bar",
+               {"'true'", "linear elastic", "Jaumann"});
+  EXPECT_NO_THROW(scene_from<2>(plane, jaumann + f_bar));
   expect_blame(f_bar + Overrides{"Geometry/Kind=plane stress"},
                "Materials/rubber/F-bar",
                {"'true'", "plane stress"});

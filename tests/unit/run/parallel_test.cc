@@ -215,6 +215,10 @@ TEST(ParallelMpi, MeanVolume)
   compare<2>(upsetting(),
              platen_is_a_face +
                Overrides{"Grid/Method=GIMP", "Materials/steel/F-bar=true"});
+  compare<2>(upsetting(),
+             platen_is_a_face + split_cells +
+               Overrides{"Materials/steel/Law=Jaumann von Mises",
+                         "Materials/steel/F-bar=true"});
 }
 
 

@@ -10,6 +10,7 @@
 #include <impm/materials/neo_hookean.h>
 #include <impm/materials/newtonian_fluid.h>
 #include <impm/materials/ogden.h>
+#include <impm/materials/orthotropic_elastic.h>
 #include <impm/materials/soil/cam_clay.h>
 
 #include <algorithm>
@@ -162,6 +163,22 @@ namespace impm
   inline const LogStrainViscoelastic::Parameters unit_dashpots = {
     unit_viscoelasticity.elasticity, unit_viscoelasticity.branches, 0.05};
 
+  inline OrthotropicConstants
+  orthotropic_constants(const Entries &entries)
+  {
+    dealii::ParameterHandler prm;
+    OrthotropicConstants::declare_parameters(prm, {});
+    for (const auto &[entry, value] : entries)
+      prm.set(entry, value);
+    return OrthotropicConstants::from_parameters(prm);
+  }
+
+  /** Stiff along axis 1, which is askew in the plane. */
+  inline const Entries lamina = {{"Young's moduli", "1, 0.3, 0.4"},
+                                 {"Poisson's ratios", "0.3, 0.4, 0.25"},
+                                 {"Shear moduli", "0.2, 0.15, 0.25"},
+                                 {"First axis", "0.8, 0.6, 0"}};
+
   inline const std::vector<std::string> laws_that_yield = {
     "log-strain von Mises", "linear von Mises", "Jaumann von Mises"};
 
@@ -186,6 +203,9 @@ namespace impm
                                  g,
                                  law));
     laws.push_back(make_law<Ogden>("Ogden", g, unit_rubber));
+    laws.push_back(make_law<OrthotropicElastic>("orthotropic elastic",
+                                                g,
+                                                orthotropic_constants(lamina)));
     for (const auto &parameters : {unit_viscoelasticity, unit_dashpots})
       laws.push_back(make_law<LogStrainViscoelastic>(
         parameters.viscosity > 0 ? "dashpots" : "branches", g, parameters));

@@ -11,7 +11,8 @@ namespace impm
    * yield stress (Pa), its slope (Pa) and its integral (J/m^3) of alpha.
    *
    * This is what laws see of hardening: limit() of a step, whose functions take
-   * the flow of the step, by how much alpha grows in it; store(); and work().
+   * the flow of the step, by how much alpha grows in it; store(); and of a
+   * history yield_stress() and work().
    *
    * History: "equivalent_plastic_strain" alpha (-).
    */
@@ -76,6 +77,13 @@ namespace impm
           const Places<Number, double> &trial_history) const
     {
       write(limit.before + flow, trial_history, plastic_offset);
+    }
+
+    /** Of a point that has flowed so far (Pa). */
+    double
+    yield_stress(const double *history) const
+    {
+      return curve.yield_stress(history[plastic_offset]);
     }
 
     /** Plastic work since the start (J/m^3). */

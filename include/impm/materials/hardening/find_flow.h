@@ -8,6 +8,13 @@
 
 namespace impm
 {
+  /** Of a yield stress, by more than round-off. */
+  inline bool
+  has_fallen(const double before, const double now)
+  {
+    return now < (1 - 1e-12) * before;
+  }
+
   /**
    * Backward Euler: how far a point flows whose von Mises stress `trial` (Pa)
    * goes down by `relief` (3 G) times the flow until it is at the limit,

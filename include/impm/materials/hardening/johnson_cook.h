@@ -245,6 +245,14 @@ namespace impm
       write(work, trial_history, work_offset);
     }
 
+    /** At the reference rate and the temperature of now (Pa). */
+    double
+    yield_stress(const double *history) const
+    {
+      return softening(history[work_offset]) *
+             parameters.curve.yield_stress(history[plastic_offset]);
+    }
+
     double
     work(const double *history) const
     {

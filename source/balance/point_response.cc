@@ -32,6 +32,7 @@ namespace impm
   template <int dim>
   PointResponse<dim>::PointResponse(const MaterialPoints<dim> &points,
                                     const double               dt,
+                                    const double               end_time,
                                     const bool     acts_in_the_middle,
                                     unsigned long &n_evaluations)
     : kinematics(points.layout.geometry == GeometryKind::axisymmetric)
@@ -44,6 +45,7 @@ namespace impm
     , dt(dt)
     , n_evaluations(n_evaluations)
     , histories(points.size() * points.history_size())
+    , thermal(points, end_time, histories)
     , n_stress(
         points.offset_stress > 0 ?
           points.layout.n_components(PointLayout::Kind::symmetric_tensor) :
@@ -97,14 +99,18 @@ namespace impm
   bool
   PointResponse<dim>::evaluate_law(Batch &batch, const bool with_tangent)
   {
-    const auto start =
-      points.layout.load_tensor(batch.template places<const double>(
-        [&](auto p) { return points.fields(p) + points.offset_deformation; }));
+    auto start = points.layout.load_tensor(batch.template places<const double>(
+      [&](auto p) { return points.fields(p) + points.offset_deformation; }));
     const auto history = batch.template places<const double>(
       [&](auto p) { return points.fields(p) + points.offset_history; });
     const auto trial_history = batch.template places<double>(
       [&](auto p) { return histories.data() + p * points.history_size(); });
-    Lanes *matrix = with_tangent ? batch.spatial.data() : nullptr;
+    Lanes     *matrix  = with_tangent ? batch.spatial.data() : nullptr;
+    const auto form    = batch.law->form();
+    const bool expands = batch.law->expands();
+    auto       seen    = batch.increment;
+    if (expands)
+      thermal.take_out(batch, form, seen, start);
     if (is_plane_stress)
       {
         Lanes      count = 0.;
@@ -113,25 +119,26 @@ namespace impm
                                                 dt,
                                                 history,
                                                 trial_history,
-                                                batch.increment,
+                                                seen,
                                                 batch.response,
                                                 matrix,
                                                 count);
         batch.scatter(count, [&](const double n, unsigned int) {
           n_evaluations += static_cast<unsigned long>(n);
         });
+        batch.increment[2][2] =
+          expands ? thermal.put_back(batch, form, seen[2][2]) : seen[2][2];
         batch.store(&batch.increment[2][2], thickening, 1);
         return fine;
       }
     n_evaluations += batch.size;
-    batch.total = batch.increment * start;
-    if (!batch.law->evaluate(
-          {batch.increment, batch.total, dt, history, trial_history},
-          with_tangent,
-          batch.response))
+    batch.total = seen * start;
+    if (!batch.law->evaluate({seen, batch.total, dt, history, trial_history},
+                             with_tangent,
+                             batch.response))
       return false;
     if (with_tangent)
-      kinematics.spatial_tangent(batch.response, batch.law->form(), matrix);
+      kinematics.spatial_tangent(batch.response, form, matrix);
     return true;
   }
 
@@ -302,11 +309,13 @@ namespace impm
     if (n_stress == 0)
       {
         const double length = std::exchange(dt, 0.);
-        const bool   fine   = evaluate(false);
+        thermal.is_at_start = true;
+        const bool fine     = evaluate(false);
         dt                  = length;
+        thermal.is_at_start = false;
         start_stresses      = stresses;
         start_potential     = potential;
-        return fine;
+        return fine && evaluate_heating();
       }
     const Tensor<2, 3> unit = unit_symmetric_tensor<3>();
     start_stresses.resize(stresses.size());
@@ -316,6 +325,32 @@ namespace impm
                             unit,
                             points.initial_volume(p),
                             &start_stresses[p * kinematics.size]);
+    return evaluate_heating();
+  }
+
+  template <int dim>
+  bool
+  PointResponse<dim>::evaluate_heating()
+  {
+    if (!thermal.exists())
+      return true;
+    if (!evaluate(false))
+      return false;
+    start_potential = potential;
+    for (unsigned int p = 0; p < points.size(); ++p)
+      if (const auto &law = points.material(p); law.expands())
+        {
+          const auto F      = points.layout.load_tensor(points.fields(p) +
+                                                   points.offset_deformation);
+          const auto before = law.energy_of_point(F,
+                                                  points.fields(p) +
+                                                    points.offset_history),
+                     after =
+                       law.energy_of_point(increment(p) * F, trial_history(p));
+          work_of_heat +=
+            points.initial_volume(p) * (after.stored + after.dissipated -
+                                        before.stored - before.dissipated);
+        }
     return true;
   }
 

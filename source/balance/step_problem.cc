@@ -109,6 +109,7 @@ namespace impm
                   TouchedNodes<dim>(scene.faces, grid, *discretization, points))
     , response(points,
                dt,
+               time + dt,
                integrator.has_stress_in_the_middle(),
                counts.stress_evaluations)
     , motion(stop_held(std::move(gathered), constraints))

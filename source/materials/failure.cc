@@ -103,9 +103,10 @@ namespace impm
           for (unsigned int j = 0; j < 3; ++j)
             F[i][j] = in_lane(step.total[i][j], lane);
         // as the yield stress, by what the step has begun with
-        const double hot = failure_strain.d5 == 0 ?
-                             failure_strain.reference_temperature :
-                             temperature(law->energy(F, start).dissipated);
+        const double hot =
+          failure_strain.d5 == 0 ?
+            failure_strain.reference_temperature :
+            temperature(law->energy(F, start).dissipated, start);
         end[damage_offset] += flow / failure_strain(triaxiality(stress, lane),
                                                     dt > 0 ? flow / dt : 0.,
                                                     hot);

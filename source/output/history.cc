@@ -53,6 +53,7 @@ namespace impm
              const double         drift,
              const bool           may_fail,
              const Figures       &of_contact,
+             const Figures       &of_heat,
              const Figures       &figures)
     {
       Figures row = {{"step", report.step},
@@ -121,7 +122,36 @@ namespace impm
                    {{"contact_work", report.contact_work},
                     {"smallest_gap", report.smallest_gap}});
       row.insert(row.end(), of_contact.begin(), of_contact.end());
+      row.insert(row.end(), of_heat.begin(), of_heat.end());
       return row;
+    }
+
+    /** What heat does, in scenes where it does. */
+    template <int dim>
+    Figures
+    heat_figures(const StepReport  &report,
+                 const Totals<dim> &totals,
+                 const bool         expands,
+                 const bool         conducts)
+    {
+      Figures figures;
+      if (expands)
+        figures.emplace_back("work_of_heat", report.work_of_heat);
+      if (conducts)
+        figures.insert(figures.end(),
+                       {{"heat", totals.heat},
+                        {"heat_supplied", report.heat_supplied},
+                        {"largest_temperature", totals.largest_temperature}});
+      return figures;
+    }
+
+    template <int dim>
+    bool
+    any_expands(const Bodies<dim> &bodies)
+    {
+      return std::any_of(bodies.begin(), bodies.end(), [](const auto &body) {
+        return !body.rigid && body.material->expands();
+      });
     }
 
     void
@@ -170,12 +200,21 @@ namespace impm
           }
         if (!strain_energy)
           {
-            const auto energy =
-              points.material(p).energy(deformation_gradient(points, p),
-                                        points.fields(p) +
-                                          points.offset_history);
+            const auto energy = points.material(p).energy_of_point(
+              deformation_gradient(points, p),
+              points.fields(p) + points.offset_history);
             totals.strain_energy += points.initial_volume(p) * energy.stored;
             totals.plastic_work += points.initial_volume(p) * energy.dissipated;
+            if (const auto &law = points.material(p); law.conducts())
+              {
+                const double temperature =
+                  law.temperature(energy.dissipated,
+                                  points.fields(p) + points.offset_history);
+                totals.heat += mass * law.specific_heat *
+                               (temperature - law.initial_temperature);
+                totals.largest_temperature =
+                  std::max(totals.largest_temperature, temperature);
+              }
           }
         ++p;
       }
@@ -188,6 +227,9 @@ namespace impm
     add_ranks(totals.kinetic_energy);
     add_ranks(totals.strain_energy);
     add_ranks(totals.plastic_work);
+    add_ranks(totals.heat);
+    totals.largest_temperature =
+      Utilities::MPI::max(totals.largest_temperature, points.communicator);
     return totals;
   }
 
@@ -224,6 +266,10 @@ namespace impm
     Figures of_contact;
     for (const auto &pair : scene.contact.pairs)
       append(pair.name, {}, of_contact);
+    const auto               of_heat = heat_figures<dim>({},
+                                           {},
+                                           any_expands(scene.bodies),
+                                           scene.heat.is_conducted);
     std::vector<std::string> names;
     for (const auto &column :
          make_row<dim>(scene.geometry,
@@ -236,6 +282,7 @@ namespace impm
                        0,
                        scene.history->find("failed").has_value(),
                        of_contact,
+                       of_heat,
                        figures))
       names.push_back(column.first);
     return names;
@@ -261,6 +308,8 @@ namespace impm
                                         return body.rigid ||
                                                body.material->has_potential();
                                       }))
+    , expands(any_expands(scene.bodies))
+    , conducts(scene.heat.is_conducted)
   {
     auto at_start = total(points);
     add(rigid, at_start);
@@ -365,7 +414,8 @@ namespace impm
                              "number: they are too fast, or too much deformed");
     // What friction has taken is not lost to the method.
     budget.update(all_energy(totals) + report.contact_work,
-                  report.external_work + report.resampling_kinetic_energy +
+                  report.external_work + report.work_of_heat +
+                    report.resampling_kinetic_energy +
                     report.resampling_internal_energy,
                   report.uncertain_work);
     drift               = may_drift ? deformation_drift(bodies, points) : 0.;
@@ -392,6 +442,7 @@ namespace impm
                               drift,
                               points.history_layout.find("failed").has_value(),
                               of_contact,
+                              heat_figures(report, totals, expands, conducts),
                               figures);
     std::ostringstream line;
     line << std::setprecision(12);

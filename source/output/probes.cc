@@ -103,8 +103,8 @@ namespace impm
           throw InputError(section + "/Field",
                            "found '" + spec.field +
                              (spec.field == "temperature" ?
-                                "', which needs a 'Specific heat' of "
-                                "every material" :
+                                "', which needs a 'Specific heat' or a "
+                                "'Prescribed temperature' of every material" :
                                 "', which the points of this scene do "
                                 "not have"));
         if (component >= field->n_components)

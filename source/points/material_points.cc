@@ -1,3 +1,4 @@
+#include <deal.II/base/function_parser.h>
 #include <deal.II/base/mpi.h>
 
 #include <deal.II/grid/filtered_iterator.h>
@@ -30,7 +31,33 @@ namespace impm
           return false;
       return true;
     }
+    template <int dim>
+    Tensor<1, dim>
+    in_plane(const Tensor<1, 3> &vector)
+    {
+      Tensor<1, dim> result;
+      for (unsigned int d = 0; d < dim; ++d)
+        result[d] = vector[d];
+      return result;
+    }
   } // namespace
+
+  void
+  start_history(const Material &material,
+                const Point<3> &place,
+                double         *history)
+  {
+    material.initialize_history(history);
+    if (const auto &prescribed = material.prescribed_temperature)
+      {
+        prescribed->set_time(0);
+        history[material.temperature_offset] = prescribed->value(place);
+      }
+    if (material.conducts())
+      history[material.temperature_offset] =
+        material.temperature_at_start->value(place) -
+        material.initial_temperature;
+  }
 
   template <int dim>
   SortedParticles<dim>::SortedParticles(const BackgroundGrid<dim> &grid,
@@ -232,6 +259,8 @@ namespace impm
     , offset_stress(layout.find("stress").value_or(0))
     , offset_initial_position(layout.find("initial_position").value_or(0))
     , offset_touched(layout.find("touched_faces").value_or(0))
+    , offset_temperature_gradient(
+        layout.find("temperature_gradient").value_or(0))
     , history_layout(history)
     , communicator(grid.communicator)
   {
@@ -269,7 +298,14 @@ namespace impm
             if (traction.body == body.name)
               values[layout.offset(traction_field(traction))] =
                 traction_area(traction, seed);
-          body.material->initialize_history(values + offset_history);
+          Point<3> place;
+          for (unsigned int d = 0; d < dim; ++d)
+            place[d] = seed.position[d];
+          start_history(*body.material, place, values + offset_history);
+          if (body.material->conducts())
+            copy(in_plane<dim>(
+                   body.material->temperature_at_start->gradient(place)),
+                 values + offset_temperature_gradient);
         };
         if (!body.rigid)
           sorted.insert(

@@ -34,7 +34,7 @@ namespace impm
           {
             fresh.emplace_back(points.history_size());
             if (body.material)
-              body.material->initialize_history(fresh.back().data());
+              start_history(*body.material, {}, fresh.back().data());
           }
         for (const auto &field : points.history_layout.fields())
           {
@@ -206,10 +206,9 @@ namespace impm
         for (const auto p : some)
           if (!gone[p])
             {
-              const auto energy =
-                points.material(p).energy(deformation_gradient(points, p),
-                                          points.fields(p) +
-                                            points.offset_history);
+              const auto energy = points.material(p).energy_of_point(
+                deformation_gradient(points, p),
+                points.fields(p) + points.offset_history);
               changes.internal_energy += factor * points.initial_volume(p) *
                                          (energy.stored + energy.dissipated);
               changes.kinetic_energy +=

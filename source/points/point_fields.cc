@@ -82,22 +82,24 @@ namespace impm
       const Tensor<2, 3>  unit = unit_symmetric_tensor<3>();
       std::vector<double> unused(points.history_size());
       Material::Response  response;
-      points.material(p).evaluate_one({unit,
-                                       F(p),
-                                       0.,
-                                       points.fields(p) + points.offset_history,
-                                       unused.data()},
-                                      false,
-                                      response);
+      const auto         &material = points.material(p);
+      const double       *history  = points.fields(p) + points.offset_history;
+      const auto          seen =
+        material.expands() ?
+                   material.cooled(F(p), history[material.expansion_offset]) :
+                   F(p);
+      material.evaluate_one({unit, seen, 0., history, unused.data()},
+                            false,
+                            response);
       return response.kirchhoff_stress;
     };
     const auto cauchy = [F, tau](const unsigned int p) {
       return tau(p) / determinant(F(p));
     };
     const auto energy = [&points, F](const unsigned int p) {
-      return points.material(p).energy(F(p),
-                                       points.fields(p) +
-                                         points.offset_history);
+      return points.material(p).energy_of_point(F(p),
+                                                points.fields(p) +
+                                                  points.offset_history);
     };
     const auto stress_difference = [cauchy](const unsigned int p) {
       const auto stress = cauchy(p);
@@ -146,9 +148,11 @@ namespace impm
       });
     if (name == "temperature" &&
         points.all_materials(
-          [](const Material &material) { return material.specific_heat > 0; }))
+          [](const Material &material) { return material.has_temperature(); }))
       return scalar([&points, energy](unsigned int p) {
-        return points.material(p).temperature(energy(p).dissipated);
+        return points.material(p).temperature(energy(p).dissipated,
+                                              points.fields(p) +
+                                                points.offset_history);
       });
     if (name == "internal_energy")
       return scalar([&points, energy](unsigned int p) {

@@ -23,6 +23,7 @@ namespace impm
     halve(const MaterialPoints<dim> &points,
           const BackgroundGrid<dim> &grid,
           const PointDomains<dim>   &fields,
+          const unsigned int         point,
           const unsigned int         axis,
           Part<dim>                 &part)
     {
@@ -41,6 +42,10 @@ namespace impm
       const double excess =
         points.layout.geometry == GeometryKind::axisymmetric ? shift[0] / x[0] :
                                                                0.;
+      const auto        &material = points.material(point);
+      const bool         conducts = material.conducts();
+      const unsigned int temperature =
+        points.offset_history + material.temperature_offset;
       Part<dim> other = part;
       for (const auto i : fields.shared)
         {
@@ -63,6 +68,11 @@ namespace impm
                 values[points.offset_velocity + c] +=
                   values[points.offset_gradient + dim * c + d] *
                   (sign - excess) * shift[d];
+          if (conducts)
+            values[temperature] +=
+              (sign - excess) *
+              (points.vector(point, points.offset_temperature_gradient) *
+               shift);
           values[fields.domain + axis] /= 2;
         }
       return other;
@@ -119,7 +129,7 @@ namespace impm
         for (unsigned int i = 0; i < parts.size();)
           if (const auto axis = axis_to_split(parts[i]); axis < dim)
             {
-              auto other = halve(points, grid, fields, axis, parts[i]);
+              auto other = halve(points, grid, fields, point, axis, parts[i]);
               parts.push_back(std::move(other));
             }
           else

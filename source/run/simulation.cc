@@ -1,5 +1,6 @@
 #include <deal.II/base/utilities.h>
 
+#include <impm/balance/heat_conduction.h>
 #include <impm/balance/terms/contact.h>
 #include <impm/base/exceptions.h>
 #include <impm/base/files.h>
@@ -368,6 +369,8 @@ namespace impm
     report.internal_work      = work.internal;
     report.stabilization_work = work.stabilization;
     report.uncertain_work     = work.uncertain;
+    report.work_of_heat       = work.heat;
+    report.heat_supplied      = total.heat_supplied;
     watch_contact();
     history.take_figures(*problem, result.increment, end_forces);
     watch_faces();
@@ -399,10 +402,19 @@ namespace impm
   void
   Simulation<dim>::commit()
   {
+    const double end = time + report.dt;
+    is_between_steps = false;
+    {
+      TimerOutput::Scope scope(timer, "move points and grid");
+      advance_points(*problem, result, increments, scene.time, points);
+    }
+    if (scene.heat.is_conducted)
+      {
+        TimerOutput::Scope scope(timer, "heat conduction");
+        report.heat_supplied +=
+          conduct_heat(*problem, grid, result.increment, points);
+      }
     TimerOutput::Scope scope(timer, "move points and grid");
-    const double       end = time + report.dt;
-    is_between_steps       = false;
-    advance_points(*problem, result, increments, scene.time, points);
     if (problem->contact)
       problem->contact->remember_meetings(*surfaces);
     if (surfaces)

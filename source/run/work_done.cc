@@ -93,6 +93,7 @@ namespace impm
                 motion->rotation_vector());
         step.last_moments[b] = moment;
       }
+    step.heat     = Utilities::MPI::sum(problem.response.work_of_heat, comm);
     step.internal = Utilities::MPI::sum(problem.response.work(), comm);
     for (const Term *term : problem.stabilization())
       step.stabilization += Utilities::MPI::sum(term->energy(u, u), comm);
@@ -108,6 +109,7 @@ namespace impm
     stabilization += step.stabilization;
     uncertain += step.uncertain;
     contact += step.contact;
+    heat += step.heat;
     last_forces  = step.last_forces;
     last_moments = step.last_moments;
   }

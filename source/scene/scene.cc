@@ -107,6 +107,7 @@ namespace impm
                   scene.grid,
                   scene.warnings);
       add_loads(top, scene.loads, scene.bodies, scene.grid, scene.geometry);
+      add_heat(top, scene.heat, scene.bodies, scene.contact, scene.warnings);
       add_time(top, scene.time, lagrangian, scene.warnings);
       choose_touch(scene);
       check_reset(top, scene);
@@ -193,6 +194,10 @@ namespace impm
       // by which they know how far their deformation has drifted
       !scene.grid.is_lagrangian() || scene.loads.body_force_is_initial ||
       !scene.grips.empty() ||
+      any_of(scene.bodies,
+             [](const auto &body) {
+               return body.material && body.material->temperature_is_initial;
+             }) ||
       any_of(scene.loads.tractions,
              [](const auto &traction) { return traction.is_initial; }) ||
       any_of(scene.output.point_fields,
@@ -214,6 +219,8 @@ namespace impm
         }))
       layout.add("initial_domain", Kind::vector);
 
+    if (scene.heat.is_conducted)
+      layout.add("temperature_gradient", Kind::vector);
     FootprintBuilder<dim>::add_fields(scene.grid, layout);
     add_touching_field(scene.faces, layout);
     for (const auto &traction : scene.loads.tractions)

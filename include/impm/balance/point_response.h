@@ -4,6 +4,7 @@
 #include <impm/balance/kinematics.h>
 #include <impm/balance/point_batch.h>
 #include <impm/balance/residual_norm.h>
+#include <impm/balance/thermal_strain.h>
 #include <impm/balance/volume_average.h>
 #include <impm/base/memory.h>
 #include <impm/points/material_points.h>
@@ -29,11 +30,13 @@ namespace impm
   {
   public:
     /**
-     * For a step of length dt (s), with gradients that are zero. Evaluations of
-     * laws are counted in `n_evaluations`.
+     * For a step of length dt (s) that ends at a time, with gradients that are
+     * zero. Evaluations of laws are counted in `n_evaluations`. Throws as
+     * ThermalStrain does. Collective.
      */
     PointResponse(const MaterialPoints<dim> &points,
                   double                     dt,
+                  double                     end_time,
                   bool                       acts_in_the_middle,
                   unsigned long             &n_evaluations);
 
@@ -44,7 +47,8 @@ namespace impm
 
     /**
      * Finds `start_stresses`, while the gradients are zero, whatever the
-     * length of the step. Returns false as evaluate() does.
+     * length of the step, and what heat does then, before anything moves.
+     * Returns false as evaluate() does.
      */
     bool
     evaluate_start();
@@ -142,7 +146,12 @@ namespace impm
 
     std::vector<double> gradients, stresses, start_stresses;
     double              potential = 0; ///< sum of V0 times those of the laws
-    double              start_potential = 0; ///< likewise, if not explicit
+    /** Likewise where nothing has moved yet but the temperature is that of the
+     * end, if not explicit. */
+    double start_potential = 0;
+    /** By how much that change of temperature raises the energy of the points:
+     * what heat gives to their motion (J). */
+    double work_of_heat = 0;
 
   private:
     /** Points of one law, on their way through evaluate(). */
@@ -164,6 +173,10 @@ namespace impm
     bool
     evaluate_law(Batch &batch, bool with_tangent);
 
+    /** Changes the temperature where nothing moves. */
+    bool
+    evaluate_heating();
+
     /** Turns the response into stresses, tangents and potential. */
     void
     carry_back(Batch &batch, bool with_tangent);
@@ -180,6 +193,7 @@ namespace impm
      * symmetric one, its lower triangle, as row * size + column; and where. */
     std::vector<unsigned int>   entries, place_of_entry;
     std::vector<double>         tangents, histories;
+    ThermalStrain<dim>          thermal;
     const unsigned int          n_stress; ///< values of a stress, if carried
     std::vector<double>         end_stresses;
     std::vector<double>         thickening; ///< dF_33 in plane stress

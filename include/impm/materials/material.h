@@ -7,11 +7,22 @@
 #include <impm/points/point_layout.h>
 
 #include <cmath>
+#include <memory>
 #include <string>
+
+namespace dealii
+{
+  template <int dim>
+  class FunctionParser;
+}
 
 namespace impm
 {
-  /** What every material has, whatever its law. */
+  /**
+   * What every material has, whatever its law. A material has a temperature if
+   * it has a specific heat, and work heats it, or if the temperature is
+   * prescribed.
+   */
   struct MaterialSpec
   {
     double density; ///< in the initial configuration (kg/m^3)
@@ -19,17 +30,60 @@ namespace impm
     /** Whether the points of a cell share its change of volume (F-bar). */
     bool average_volume = false;
 
-    double specific_heat       = 0; ///< (J/(kg K)); 0: no temperature
-    double initial_temperature = 0; ///< (K), if it has a specific heat
+    double specific_heat       = 0; ///< (J/(kg K))
+    double initial_temperature = 0; ///< (K), or a typical one
     double heating_share       = 1; ///< of plastic or viscous work, 0 to 1
+    double conductivity        = 0; ///< (W/(m K)); 0: nothing is conducted
 
-    /** (K) after what has been dissipated (J/m^3); nothing is conducted. */
-    template <typename Number>
-    Number
-    temperature(const Number &dissipated) const
+    /** (K) in (x, y, z, t), or null. */
+    std::shared_ptr<dealii::FunctionParser<3>> prescribed_temperature;
+    /** Whether that is a function of initial places. */
+    bool temperature_is_initial = false;
+    /** The initial temperature in (x, y, z), if heat is conducted, or null. */
+    std::shared_ptr<dealii::FunctionParser<3>> temperature_at_start;
+
+    double expansion               = 0; ///< of length (1/K)
+    double stress_free_temperature = 0; ///< (K)
+
+    /** In the history, where it is prescribed: the temperature (K); where heat
+     * is conducted: what that has added to it (K). */
+    unsigned int temperature_offset = 0;
+    /** Likewise, where it expands: the strain by which it would do so freely in
+     * the state of the point, expansion times what the temperature is above
+     * that without stress. */
+    unsigned int expansion_offset = 0;
+
+    bool
+    has_temperature() const
     {
-      return initial_temperature +
-             heating_share / (density * specific_heat) * dissipated;
+      return specific_heat > 0 || prescribed_temperature;
+    }
+
+    bool
+    conducts() const
+    {
+      return conductivity > 0;
+    }
+
+    bool
+    expands() const
+    {
+      return expansion != 0;
+    }
+
+    /** (K) after what has been dissipated since the start (J/m^3). */
+    template <typename Number, typename Place>
+    Number
+    temperature(const Number &dissipated, const Place &history) const
+    {
+      if (prescribed_temperature)
+        return read(history, temperature_offset);
+      const Number adiabatic =
+        initial_temperature +
+        heating_share / (density * specific_heat) * dissipated;
+      return conducts() ?
+               Number(adiabatic + read(history, temperature_offset)) :
+               adiabatic;
     }
   };
 
@@ -159,7 +213,8 @@ namespace impm
       return false;
     }
 
-    /** Energy in the state (F, history) at the end of a step. */
+    /** Energy in the state (F, history) at the end of a step, where nothing has
+     * expanded by heat. */
     virtual Energy
     energy(const dealii::Tensor<2, 3> &deformation_gradient,
            const double               *history) const = 0;
@@ -178,6 +233,25 @@ namespace impm
     has_symmetric_tangent() const
     {
       return form() != Form::full;
+    }
+
+    /**
+     * What the law is asked for where a point has F and would expand freely by
+     * a strain: F without that expansion. Laws of small strains about t_n take
+     * it out of the strain of the step instead (see ThermalStrain).
+     */
+    dealii::Tensor<2, 3>
+    cooled(const dealii::Tensor<2, 3> &F, const double strain) const
+    {
+      return form() == Form::linearized ? F : std::exp(-strain) * F;
+    }
+
+    /** Energy in the state (F, history) of a point. */
+    Energy
+    energy_of_point(const dealii::Tensor<2, 3> &F, const double *history) const
+    {
+      return energy(expands() ? cooled(F, history[expansion_offset]) : F,
+                    history);
     }
 
     /** Whether it resists being stretched without a change of volume. */

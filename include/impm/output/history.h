@@ -31,8 +31,10 @@ namespace impm
     double internal_work      = 0; ///< of the stresses, as seen by the grid (J)
     double stabilization_work = 0; ///< of ghost penalty and holding (J)
     double uncertain_work     = 0; ///< see WorkDone (J)
-    double contact_work = 0; ///< stored in contact, or lost to friction (J)
-    double smallest_gap = 1; ///< between surfaces, over their layer
+    double contact_work  = 0; ///< stored in contact, or lost to friction (J)
+    double work_of_heat  = 0; ///< by thermal expansion (J)
+    double heat_supplied = 0; ///< by faces and sources, where conducted (J)
+    double smallest_gap  = 1; ///< between surfaces, over their layer
     unsigned int splits = 0, merges = 0, grid_resets = 0;
     unsigned int unstable = 0; ///< steps from an equilibrium that is not stable
     unsigned int damped   = 0; ///< steps that end in none
@@ -61,7 +63,8 @@ namespace impm
               &splits &merges &grid_resets &unstable &damped &pieces &flow_share
                 &failed_points &failed_volume &resampling_kinetic_energy
                   &resampling_internal_energy &step_error &imbalance
-                    &wall_seconds &contact_work &smallest_gap;
+                    &wall_seconds &contact_work &smallest_gap &work_of_heat
+                      &heat_supplied;
     }
   };
 
@@ -73,6 +76,8 @@ namespace impm
     dealii::Tensor<1, dim> momentum;
     dealii::Tensor<1, 3>   angular_momentum; ///< about the origin
     double kinetic_energy = 0, strain_energy = 0, plastic_work = 0;
+    double heat                = 0; ///< above the initial temperature (J)
+    double largest_temperature = 0; ///< (K)
   };
 
   /** With the energy (J) that the points of this rank store, if it is known
@@ -195,6 +200,7 @@ namespace impm
     bool          may_drift = true; ///< points began where F says
     double        drift     = 0;
     Figures       figures, of_contact;
+    const bool    expands, conducts; ///< whether any material does
     std::string   file_name;
     std::ofstream file;
     unsigned long size = 0; ///< of the file, in whole rows (bytes)

@@ -16,6 +16,12 @@
 
 namespace impm
 {
+  /** Writes the history of a point of a material that starts at a place. */
+  void
+  start_history(const Material         &material,
+                const dealii::Point<3> &place,
+                double                 *history);
+
   /** Particles in a grid, none of which may ever be lost. */
   template <int dim>
   class SortedParticles
@@ -255,7 +261,7 @@ namespace impm
     // is what the force at t_n comes from, tau.
     const unsigned int offset_velocity, offset_rate, offset_acceleration,
       offset_affine, offset_gradient, offset_stress, offset_initial_position,
-      offset_touched;
+      offset_touched, offset_temperature_gradient;
     /** Within the history: offsets count from offset_history. */
     const PointLayout history_layout;
     const MPI_Comm    communicator;

@@ -33,19 +33,15 @@ namespace impm
    * Names of all the fields that some scene can have. Those that points do
    * not carry follow from what they do:
    *
-   *   temperature      T0 + share * plastic work / (rho0 c): that share of it
-   *                    heats, 1 by default, nothing is conducted (Sulsky & Kaul
-   *                    2004, eq. 2.3.5) (K)
-   *   parent           id of the point that it was split from, or -1
-   *   internal_energy  what is stored plus plastic work (eq. 2.2.16) (J/kg)
-   *   principal_stress_difference
-   *                    s1 - s2 of the Cauchy stress in the plane: x and y, or
-   *                    r and z (Pa)
-   *   photoelastic_fringe
-   *                    cos(2 pi n (s1 - s2) / max(s1 - s2)) with a fringe
-   *                    number n and the largest difference that any point of
-   *                    a deformable body has at this instant; 1 where there
-   *                    is no stress (Guilkey & Weiss 2003, eq. 22)
+   *   temperature      prescribed, or T0 + share * plastic work / (rho0 c):
+   * that share of it heats, 1 by default (Sulsky & Kaul 2004, eq. 2.3.5), with
+   * what is conducted (K) parent           id of the point that it was split
+   * from, or -1 internal_energy  what is stored plus plastic work (eq. 2.2.16)
+   * (J/kg) principal_stress_difference s1 - s2 of the Cauchy stress in the
+   * plane: x and y, or r and z (Pa) photoelastic_fringe cos(2 pi n (s1 - s2) /
+   * max(s1 - s2)) with a fringe number n and the largest difference that any
+   * point of a deformable body has at this instant; 1 where there is no stress
+   * (Guilkey & Weiss 2003, eq. 22)
    *
    * The last two need a plane: not in 3D.
    */

@@ -27,6 +27,7 @@ namespace impm
     struct Step
     {
       double external = 0, internal = 0, stabilization = 0, contact = 0;
+      double heat = 0; ///< see PointResponse::work_of_heat
       /** Between the trapezoidal rule and the forces at one end (J). */
       double                              uncertain = 0;
       std::vector<dealii::Tensor<1, dim>> last_forces;
@@ -47,7 +48,7 @@ namespace impm
     void
     serialize(Archive &archive, const unsigned int /*version*/)
     {
-      archive &external &internal &stabilization &uncertain &contact
+      archive &external &internal &stabilization &uncertain &contact &heat
         &last_forces &last_moments;
     }
 
@@ -56,6 +57,7 @@ namespace impm
     double stabilization = 0; ///< by ghost penalty and holding (J)
     double uncertain     = 0; ///< of the external work (J)
     double contact       = 0; ///< stored in contact, or lost to friction (J)
+    double heat          = 0; ///< by thermal expansion (J)
 
   private:
     // At the end of the last step, see Step.

@@ -8,6 +8,7 @@
 #include <impm/input/sections/general.h>
 #include <impm/input/sections/geometry.h>
 #include <impm/input/sections/grid.h>
+#include <impm/input/sections/heat.h>
 #include <impm/input/sections/loads.h>
 #include <impm/input/sections/output.h>
 #include <impm/input/sections/reference.h>
@@ -36,6 +37,7 @@ namespace impm
     std::vector<GripSpec<dim>>      grips;
     ContactSpec                     contact;
     LoadsSpec<dim>                  loads;
+    HeatSpec<dim>                   heat;
     TimeSpec                        time;
     SolverSpec                      solver;
     StabilizationSpec               stabilization;

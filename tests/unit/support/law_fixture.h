@@ -65,6 +65,7 @@ namespace impm
                    return found == entries.end() ? fallback : found->second;
                  });
     prm.declare_entry("Specific heat", "");
+    prm.declare_entry("Prescribed temperature", "");
     prm.set("Young's modulus", "1");
     for (const auto &[entry, value] : entries)
       prm.set(entry, value);

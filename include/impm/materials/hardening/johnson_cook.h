@@ -21,9 +21,9 @@ namespace impm
    *   T* = (T - T_r) / (T_m - T_r) within 0 and 1.
    *
    * The rate is that of the step, its flow by its length; in a step of no
-   * length nothing flows. The temperature is that at its start, from the
-   * plastic work up to there, so that the limit is a function of the flow
-   * alone; without a specific heat there is no temperature.
+   * length nothing flows. The temperature is that at its start,
+   * whatever heats (see MaterialSpec), so that the limit is a function of the
+   * flow alone; a material that has no temperature is at T_r.
    *
    * History: "equivalent_plastic_strain" alpha (-) and "plastic_work" (J/m^3),
    * which alpha does not tell here. As CurveHardening.
@@ -50,7 +50,8 @@ namespace impm
                           "1",
                           dealii::Patterns::Double(1e-300),
                           "Rate (1/s) up to which it has no effect, positive.");
-        if (chosen("Specific heat", "").empty())
+        if (chosen("Specific heat", "").empty() &&
+            chosen("Prescribed temperature", "").empty())
           return;
         prm.declare_entry("Melting temperature",
                           "1800",
@@ -68,14 +69,15 @@ namespace impm
                           "positive.");
       }
 
-      /** Beside the entry 'Specific heat' of materials. */
+      /** Beside the entries of materials that give them a temperature. */
       static Parameters
       from_parameters(dealii::ParameterHandler &prm)
       {
         Parameters result{LudwikHardening::from_parameters(prm),
                           prm.get_double("Rate coefficient"),
                           prm.get_double("Reference rate")};
-        if (prm.get("Specific heat").empty())
+        if (prm.get("Specific heat").empty() &&
+            prm.get("Prescribed temperature").empty())
           return result;
         result.reference_temperature = prm.get_double("Reference temperature");
         result.melting_temperature   = prm.get_double("Melting temperature");
@@ -225,7 +227,7 @@ namespace impm
       const Number work = read(step.history, work_offset);
       // In no time any flow is infinitely fast.
       const Number softened = step.dt > 0 ?
-                                softening(work) :
+                                softening(work, step.history) :
                                 Number(std::numeric_limits<double>::infinity());
       return {parameters,
               read(step.history, plastic_offset),
@@ -263,12 +265,13 @@ namespace impm
     /** 1 - T*^m after some plastic work. */
     template <typename Number>
     Number
-    softening(const Number &work) const
+    softening(const Number                       &work,
+              const Places<Number, const double> &history) const
     {
       if (parameters.thermal_exponent == 0)
         return 1.;
       const Number above =
-        (spec.temperature(work) - parameters.reference_temperature) /
+        (spec.temperature(work, history) - parameters.reference_temperature) /
         (parameters.melting_temperature - parameters.reference_temperature);
       const Number share = select(above < 0., Number(0.), above);
       return select(share < 1.,

@@ -158,7 +158,8 @@ namespace impm
     bool
     softens(const double *start, const double *end) const override
     {
-      return has_fallen(hardening.yield_stress(start),
+      return hardening.work(end) > hardening.work(start) &&
+             has_fallen(hardening.yield_stress(start),
                         hardening.yield_stress(end));
     }
 

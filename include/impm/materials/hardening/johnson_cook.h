@@ -251,7 +251,7 @@ namespace impm
     double
     yield_stress(const double *history) const
     {
-      return softening(history[work_offset]) *
+      return softening<double>(history[work_offset], history) *
              parameters.curve.yield_stress(history[plastic_offset]);
     }
 

@@ -22,6 +22,8 @@ namespace impm
       "von_mises_stress",
       "pressure",
       "equivalent_plastic_strain",
+      "opening",
+      "preconsolidation_pressure",
       "deformation_gradient",
       "volume",
       "body",
@@ -124,7 +126,8 @@ namespace impm
     if (name == "pressure")
       return scalar([cauchy](unsigned int p) { return -trace(cauchy(p)) / 3; });
     if (const auto offset = points.layout.find(name);
-        offset && name == "equivalent_plastic_strain")
+        offset && (name == "equivalent_plastic_strain" || name == "opening" ||
+                   name == "preconsolidation_pressure"))
       return scalar([&points, offset = *offset](unsigned int p) {
         return points.fields(p)[offset];
       });

@@ -23,6 +23,8 @@ namespace impm
       "pressure",
       "equivalent_plastic_strain",
       "damage",
+      "opening",
+      "preconsolidation_pressure",
       "deformation_gradient",
       "volume",
       "body",
@@ -34,6 +36,17 @@ namespace impm
       "photoelastic_fringe"};
     return names;
   }
+
+  namespace
+  {
+    /** Scalars that laws keep. */
+    bool
+    is_in_the_history(const std::string &name)
+    {
+      return name == "equivalent_plastic_strain" || name == "damage" ||
+             name == "opening" || name == "preconsolidation_pressure";
+    }
+  } // namespace
 
   bool
   is_plane_field(const std::string &name)
@@ -127,7 +140,7 @@ namespace impm
     if (name == "pressure")
       return scalar([cauchy](unsigned int p) { return -trace(cauchy(p)) / 3; });
     if (const auto offset = points.layout.find(name);
-        offset && (name == "equivalent_plastic_strain" || name == "damage"))
+        offset && is_in_the_history(name))
       return scalar([&points, offset = *offset](unsigned int p) {
         return points.fields(p)[offset];
       });

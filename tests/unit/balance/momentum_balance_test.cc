@@ -269,6 +269,30 @@ TEST(MomentumBalanceMpi, DerivativesOfRateLaws)
 }
 
 
+// Whose tangents are of spatial form, but not symmetric.
+TEST(MomentumBalanceMpi, DerivativesOfSoils)
+{
+  const std::string law  = "Materials/rubber/Law=";
+  const Overrides   cone = {law + "log-strain Drucker-Prager",
+                            "Materials/rubber/Cohesion=0.002",
+                            "Materials/rubber/Dilation angle=10"};
+  // the entries of elasticity are none of this law's
+  auto clay = block_scene("plane strain");
+  for (const std::string entry : {"Young's modulus", "Poisson's ratio"})
+    if (const auto from = clay.find("    set " + entry);
+        from != std::string::npos)
+      clay.erase(from, clay.find('\n', from) + 1 - from);
+  check<2>("plane strain", cone + refined, 0.01);
+  check<2>("plane strain", cone + boxes, 0.01);
+  check<2>("axisymmetric", cone + trapezoidal, 0.01);
+  check<3>("3D", cone + Overrides{"Grid/Cells=2, 3, 2"}, 0.02);
+  check_scene<2>(clay,
+                 "clay",
+                 boxes + Overrides{law + "modified Cam-clay"},
+                 0.01);
+}
+
+
 TEST(MomentumBalanceMpi, DerivativesInPlaneStress)
 {
   check<2>("plane stress", {}, 0.03);

@@ -190,7 +190,8 @@ TEST(SoilReturn, EndsOnTheLimit)
             if (!end.flows)
               {
                 EXPECT_LE(beyond(trial), 1e-15 * scale);
-                EXPECT_EQ(stress, trial);
+                for (unsigned int a = 0; a < 3; ++a)
+                  EXPECT_NEAR(stress[a], trial[a], round_off);
               }
             else
               {

@@ -126,9 +126,14 @@ namespace impm
               const PolyhedralReturn         &way,
               const Triple                   &strain)
     {
-      const auto  &found = way.result;
-      const double rigid = 2. * elasticity.shear;
-      Triple       result;
+      const auto  &found     = way.result;
+      const double rigid     = 2. * elasticity.shear;
+      double       round_off = 0; // of the stresses in a corner
+      for (unsigned int i = 0; i < found.size; ++i)
+        round_off = std::max({round_off,
+                              1e-13 * std::abs(planes[found.planes[i]].limit),
+                              1e-13 * std::abs(found.stress[i])});
+      Triple result;
       for (unsigned int a = 0; a < 2; ++a)
         for (unsigned int b = a + 1; b < 3; ++b)
           {
@@ -145,9 +150,7 @@ namespace impm
             else if (found.size == 3)
               {
                 const double difference = found.stress[a] - found.stress[b];
-                const double round_off  = 1e-13 * (std::abs(found.stress[a]) +
-                                                  std::abs(found.stress[b]));
-                secant                  = difference > round_off ?
+                secant                  = difference > round_off && apart > 0 ?
                                             std::min(rigid, difference / apart) :
                                             0.;
               }

@@ -380,7 +380,7 @@ TEST(MomentumBalanceMpi, MeanVolumeKeepsAngularMomentum)
                                   Overrides{law + "Jaumann elastic"}));
       model.scatter_points(1);
       model.begin_step();
-      const Vector u = model.random_increment(1, 0.02);
+      const impm::Vector u = model.random_increment(1, 0.02);
       ASSERT_TRUE(model.balance().evaluate(u).admissible);
       const auto        &response = model.problem->response;
       const unsigned int n        = response.kinematics.size;

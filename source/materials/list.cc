@@ -32,7 +32,7 @@ namespace impm
      */
     template <typename Law, typename Parameters>
     MaterialEntry
-    law(const std::string &name)
+    law(const std::string &name, const bool locks = false)
     {
       return {name,
               [](dealii::ParameterHandler    &prm,
@@ -46,7 +46,8 @@ namespace impm
                 return std::make_unique<Law>(spec,
                                              history,
                                              Parameters::from_parameters(prm));
-              }};
+              },
+              locks};
     }
 
     /** The name of the hardening and the entries of that one alone. */
@@ -117,7 +118,7 @@ namespace impm
       law_that_yields<LinearLaw>("linear von Mises"),
       law<JaumannLaw<NoYield>, ElasticConstants>("Jaumann elastic"),
       law_that_yields<JaumannLaw>("Jaumann von Mises"),
-      law<NewtonianFluid, NewtonianFluid::Parameters>("Newtonian fluid")};
+      law<NewtonianFluid, NewtonianFluid::Parameters>("Newtonian fluid", true)};
     return list;
   }
 } // namespace impm

@@ -50,7 +50,8 @@ namespace impm
                   law.locks && geometry != GeometryKind::plane_stress,
                   "The points of a cell share its change of volume, against "
                   "locking of materials that hardly change theirs. By default "
-                  "with log-strain von Mises, but for plane stress.");
+                  "with log-strain von Mises, but for plane stress, and with "
+                  "fluids.");
       section.add("Specific heat",
                   specific_heat,
                   "(J/(kg K)), with which plastic or viscous work becomes "

@@ -34,7 +34,7 @@ namespace impm
      */
     template <typename Law, typename Parameters>
     MaterialEntry
-    law(const std::string &name)
+    law(const std::string &name, const bool locks = false)
     {
       return {name,
               [](dealii::ParameterHandler    &prm,
@@ -48,7 +48,8 @@ namespace impm
                 return std::make_unique<Law>(spec,
                                              history,
                                              Parameters::from_parameters(prm));
-              }};
+              },
+              locks};
     }
 
     /** A law of soil, which tears rather than be a sheet. */
@@ -132,7 +133,7 @@ namespace impm
       soil<FrictionalLaw<DruckerPrager>>("log-strain Drucker-Prager"),
       soil<FrictionalLaw<MohrCoulomb>>("log-strain Mohr-Coulomb"),
       soil<CamClay>("modified Cam-clay"),
-      law<NewtonianFluid, NewtonianFluid::Parameters>("Newtonian fluid")};
+      law<NewtonianFluid, NewtonianFluid::Parameters>("Newtonian fluid", true)};
     return list;
   }
 } // namespace impm

@@ -320,8 +320,7 @@ namespace impm
         {
           std::ostringstream text;
           text << std::setprecision(3) << "body '" << scene.bodies[b].name
-               << "' softens, at t = " << time + report.dt << " s in "
-               << 100 * shares[b]
+               << "' softens, now in " << 100 * shares[b]
                << " % of its volume: its yield stress falls as it flows. The "
                   "flow gathers in a band as wide as a cell, so that forces "
                   "and work from here on depend on the size of the cells";

@@ -3,7 +3,6 @@
 
 #include <impm/base/lanes.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -38,20 +37,46 @@ namespace impm
   class LogDifferences
   {
   public:
-    explicit LogDifferences(const std::array<Number, 3> &strain)
+    /** With x_over_sinh of the differences 01, 02, 12 of the strains. */
+    LogDifferences(const std::array<Number, 3> &strain,
+                   const std::array<Number, 3> &ratios)
     {
       // Of degree zero in the stretches, whose mean is taken out.
       const Number mean = (strain[0] + strain[1] + strain[2]) / 3.;
       for (unsigned int a = 0; a < 3; ++a)
         {
-          logarithm[a] = 2. * (strain[a] - mean);
-          stretch[a]   = each([](const double x) { return std::exp(x); },
+          stretch[a] = each([](const double x) { return std::exp(x); },
                             Number(strain[a] - mean));
+          square[a]  = stretch[a] * stretch[a];
         }
+      const auto first = [&](const unsigned int a, const unsigned int b) {
+        return Number(ratios[a + b - 1] / (stretch[a] * stretch[b]));
+      };
       for (unsigned int a = 0; a < 3; ++a)
-        for (unsigned int b = a; b < 3; ++b)
-          for (unsigned int c = b; c < 3; ++c)
-            second[a][b][c] = difference(a, b, c);
+        for (unsigned int b = 0; b < 3; ++b)
+          if (a == b)
+            second[a][a][a] = -0.5 / (square[a] * square[a]);
+          else
+            second[a][a][b] = second[a][b][a] = second[b][a][a] =
+              difference(1. / square[a] - first(a, b),
+                         square[a] - square[b],
+                         {{square[a], square[a], square[b]}});
+      // by the largest of the three differences of squares
+      using std::abs;
+      Number     rise = first(0, 1) - first(1, 2), run = square[0] - square[2];
+      const auto take_if_larger = [&](const Number &other_rise,
+                                      const Number &other_run) {
+        const auto is_larger = abs(other_run) > abs(run);
+        rise                 = select(is_larger, other_rise, rise);
+        run                  = select(is_larger, other_run, run);
+      };
+      take_if_larger(first(0, 2) - first(1, 2), square[0] - square[1]);
+      take_if_larger(first(0, 1) - first(0, 2), square[1] - square[2]);
+      const Number of_all = difference(rise, run, square);
+      for (unsigned int a = 0; a < 3; ++a)
+        for (unsigned int b = 0; b < 3; ++b)
+          if (a != b)
+            second[a][b][3 - a - b] = of_all;
     }
 
     /** 2 lambda_c^2 lambda_a lambda_b ln[lambda_a^2, lambda_c^2, lambda_b^2].
@@ -61,69 +86,49 @@ namespace impm
            const unsigned int c,
            const unsigned int b) const
     {
-      std::array<unsigned int, 3> i{{a, b, c}};
-      std::sort(i.begin(), i.end());
-      return 2. * stretch[c] * stretch[c] * stretch[a] * stretch[b] *
-             second[i[0]][i[1]][i[2]];
+      return 2. * square[c] * stretch[a] * stretch[b] * second[a][c][b];
     }
 
   private:
-    /** ln[l_a, l_b, l_c] at the squares l of stretches. */
-    Number
-    difference(const unsigned int a,
-               const unsigned int b,
-               const unsigned int c) const
+    /** rise / run or, where the squares meet, a series in what they are apart,
+     * relative to their mean. */
+    static Number
+    difference(const Number                &rise,
+               const Number                &run,
+               const std::array<Number, 3> &squares)
     {
-      std::array<Number, 3> x{{logarithm[a], logarithm[b], logarithm[c]}},
-        l{{stretch[a] * stretch[a],
-           stretch[b] * stretch[b],
-           stretch[c] * stretch[c]}};
-      const auto order = [&](const unsigned int i, const unsigned int j) {
-        const auto   falls = x[i] > x[j];
-        const Number x_i = x[i], l_i = l[i];
-        x[i] = select(falls, x[j], x_i);
-        x[j] = select(falls, x_i, x[j]);
-        l[i] = select(falls, l[j], l_i);
-        l[j] = select(falls, l_i, l[j]);
-      };
-      order(0, 1);
-      order(1, 2);
-      order(0, 1);
-
-      // About the mean m, l = m (1 + z): the complete homogeneous symmetric
-      // polynomials h_n of z, whose sum is zero, with the coefficients of the
-      // logarithm; below 1e-16 of it is left out.
-      const Number m  = (l[0] + l[1] + l[2]) / 3.;
-      const Number z0 = (l[0] - m) / m, z1 = (l[1] - m) / m,
-                   z2 = (l[2] - m) / m;
-      const Number e2 = z0 * z1 + z0 * z2 + z1 * z2, e3 = z0 * z1 * z2;
-      std::array<Number, 12> h;
-      h[0]          = 1.;
-      h[1]          = 0.;
-      h[2]          = -e2;
-      Number series = -0.5 * h[0] - 0.25 * h[2];
-      for (unsigned int n = 3; n < 12; ++n)
+      using std::abs;
+      const Number mean   = (squares[0] + squares[1] + squares[2]) / 3.;
+      const auto   meet   = abs(run) < 0.05 * mean;
+      Number       series = 0.;
+      if (any_of(meet))
         {
-          h[n] = e3 * h[n - 3] - e2 * h[n - 2];
-          series += (n % 2 == 0 ? -1. : 1.) / (n + 2) * h[n];
+          // ln at mean (1 + z): complete homogeneous symmetric polynomials h_n
+          // of the three z, whose sum is zero, with the coefficients of the
+          // logarithm. Left out is less than 1e-16 of it.
+          std::array<Number, 3> z;
+          for (unsigned int i = 0; i < 3; ++i)
+            z[i] = (squares[i] - mean) / mean;
+          const Number e2 = z[0] * z[1] + z[0] * z[2] + z[1] * z[2],
+                       e3 = z[0] * z[1] * z[2];
+          std::array<Number, 12> h;
+          h[0]   = 1.;
+          h[1]   = 0.;
+          h[2]   = -e2;
+          series = -0.5 * h[0] - 0.25 * h[2];
+          for (unsigned int n = 3; n < 12; ++n)
+            {
+              h[n] = e3 * h[n - 3] - e2 * h[n - 2];
+              series += (n % 2 == 0 ? -1. : 1.) / (n + 2) * h[n];
+            }
+          series /= mean * mean;
+          if (all_of(meet))
+            return series;
         }
-      series /= m * m;
-      const auto are_close = x[2] - x[0] < 0.05;
-      if (all_of(are_close))
-        return series;
-
-      const auto first = [&](const unsigned int i, const unsigned int j) {
-        using std::sqrt;
-        return Number(x_over_sinh(Number(0.5 * (x[i] - x[j]))) /
-                      sqrt(Number(l[i] * l[j])));
-      };
-      const Number apart = select(are_close, Number(1.), Number(l[2] - l[0]));
-      return select(are_close,
-                    series,
-                    Number((first(2, 1) - first(1, 0)) / apart));
+      return select(meet, series, Number(rise / select(meet, Number(1.), run)));
     }
 
-    std::array<Number, 3>                               logarithm, stretch;
+    std::array<Number, 3>                               stretch, square;
     std::array<std::array<std::array<Number, 3>, 3>, 3> second;
   };
 } // namespace impm

@@ -226,7 +226,10 @@ namespace impm
               c[B][A] += sum;
           }
 
-      const LogDifferences<Number> differences(state.principal.strain);
+      const LogDifferences<Number> differences(state.principal.strain,
+                                               {{state.shear_factor[3],
+                                                 state.shear_factor[4],
+                                                 state.shear_factor[5]}});
       for (unsigned int a = 0; a < 3; ++a)
         for (unsigned int b = 0; b < 3; ++b)
           for (unsigned int k = 0; k < 3; ++k)

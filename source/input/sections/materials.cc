@@ -220,7 +220,8 @@ namespace impm
                   law.locks && geometry != GeometryKind::plane_stress,
                   "The points of a cell share its change of volume, against "
                   "locking of materials that hardly change theirs. By default "
-                  "with log-strain von Mises, but for plane stress.");
+                  "with log-strain von Mises, but for plane stress, and with "
+                  "fluids.");
       const bool has_temperature = add_temperature(section, spec, geometry);
       if (has_temperature)
         add_expansion(section, spec);

@@ -1,5 +1,6 @@
 #include <impm/balance/terms/ghost_penalty.h>
 #include <impm/base/exceptions.h>
+#include <impm/materials/log_strain_elastic.h>
 #include <impm/solve/difference_quotient.h>
 
 #include <gtest/gtest.h>
@@ -285,6 +286,8 @@ TEST(MomentumBalanceMpi, DerivativesOfSoils)
   check<2>("plane strain", cone + refined, 0.01);
   check<2>("plane strain", cone + boxes, 0.01);
   check<2>("axisymmetric", cone + trapezoidal, 0.01);
+  check<2>("plane strain", cone + f_bar + refined, 0.01);
+  check<2>("axisymmetric", cone + f_bar, 0.01);
   check<3>("3D", cone + Overrides{"Grid/Cells=2, 3, 2"}, 0.02);
   check_scene<2>(clay,
                  "clay",
@@ -388,6 +391,111 @@ TEST(MomentumBalanceMpi, DerivativesWithMeanVolumeOfRateLaws)
 }
 
 
+namespace
+{
+  /** Hencky's elasticity with a pressure by shear, which has no energy. */
+  class DilatingLaw final : public LawInLanes<DilatingLaw>
+  {
+  public:
+    DilatingLaw(const MaterialSpec &spec)
+      : LawInLanes(spec, 1., 1.)
+    {}
+
+    template <typename Number>
+    bool
+    evaluate_any(const BasicStep<Number> &step,
+                 const bool               with_tangent,
+                 BasicResponse<Number>   &response) const
+    {
+      return evaluate_elastic(
+        step, with_tangent, response, [&](const auto &strain, auto &stress) {
+          stress              = elasticity.stress(strain);
+          const Number mean   = (strain[0] + strain[1] + strain[2]) / 3.;
+          Number       square = 0.;
+          for (unsigned int a = 0; a < 3; ++a)
+            square += (strain[a] - mean) * (strain[a] - mean);
+          for (unsigned int a = 0; a < 3; ++a)
+            {
+              stress.stress[a] += 2. * square;
+              for (unsigned int b = 0; b < 3; ++b)
+                stress.moduli[a][b] += 4. * (strain[b] - mean);
+            }
+          return Number(0.);
+        });
+    }
+
+    Energy
+    energy(const Tensor<2, 3> &, const double *) const override
+    {
+      return {};
+    }
+
+    bool
+    has_symmetric_tangent() const override
+    {
+      return false;
+    }
+
+  private:
+    const HenckyElasticity elasticity{ElasticConstants::from_young(1., 0.3)};
+  };
+} // namespace
+
+
+// The same where the tangent is that of a spatial law: all points of all cells.
+TEST(MomentumBalance, MeanVolumeOfASpatialLawWithoutAPotential)
+{
+  for (const std::string kind : {"plane strain", "axisymmetric"})
+    {
+      auto         scene = scene_from<2>(block_scene(kind), f_bar);
+      MaterialSpec spec{1.};
+      spec.average_volume      = true;
+      scene.bodies[0].material = std::make_shared<DilatingLaw>(spec);
+      BackgroundGrid<2>   grid(scene.grid, MPI_COMM_SELF);
+      MaterialPoints<2>   points(choose_layout(scene),
+                               *scene.history,
+                               scene.bodies,
+                               scene.loads.tractions,
+                               grid);
+      unsigned long       n_evaluations = 0;
+      PointResponse<2>    response(points, 1., false, n_evaluations);
+      const unsigned int  n = response.gradients.size();
+      std::mt19937        generator(1);
+      std::vector<double> at(n), change(n), tangent(n), back(n);
+      std::uniform_real_distribution<double> uniform(-1, 1);
+      for (unsigned int i = 0; i < n; ++i)
+        {
+          at[i]     = 0.1 * uniform(generator);
+          change[i] = uniform(generator);
+        }
+      const auto stresses_at = [&](const double h) {
+        for (unsigned int i = 0; i < n; ++i)
+          response.gradients[i] = at[i] + h * change[i];
+        EXPECT_TRUE(response.evaluate(false));
+        return dealii::Vector<double>(response.stresses.begin(),
+                                      response.stresses.end());
+      };
+      auto difference    = derivative(stresses_at, 1e-4);
+      response.gradients = at;
+      ASSERT_TRUE(response.evaluate(true));
+      EXPECT_FALSE(response.average.left_coupling.empty());
+      response.apply_tangent(change, tangent);
+      difference -= dealii::Vector<double>(tangent.begin(), tangent.end());
+      EXPECT_LT(difference.linfty_norm(), 1e-10);
+      // and not symmetric
+      const auto other = response.stresses;
+      response.apply_tangent(other, back);
+      double one = 0, two = 0;
+      for (unsigned int i = 0; i < n; ++i)
+        {
+          one += other[i] * tangent[i];
+          two += change[i] * back[i];
+        }
+      EXPECT_GT(std::abs(one - two), 1e-6 * std::abs(one));
+    }
+}
+
+
 // Forces on the moved body have no moment: P dF^T is symmetric at every point.
 TEST(MomentumBalanceMpi, MeanVolumeKeepsAngularMomentum)
 {
@@ -404,7 +512,7 @@ TEST(MomentumBalanceMpi, MeanVolumeKeepsAngularMomentum)
                                   Overrides{law + "Jaumann elastic"}));
       model.scatter_points(1);
       model.begin_step();
-      const Vector u = model.random_increment(1, 0.02);
+      const impm::Vector u = model.random_increment(1, 0.02);
       ASSERT_TRUE(model.balance().evaluate(u).admissible);
       const auto        &response = model.problem->response;
       const unsigned int n        = response.kinematics.size;

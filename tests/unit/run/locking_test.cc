@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "run_file.h"
 
@@ -87,4 +88,25 @@ TEST(Locking, CooksMembraneTendsToALimit)
   expect_limit("extreme/cook_points",
                {"Grid/Cells=14, 18", "General/Constants=h = 0.004"},
                0.015);
+}
+
+
+// A vortex of a fluid decays by its viscosity alone
+// (prm/fluid/decaying_vortex.prm), whatever the bulk modulus; without F-bar
+// cells lock, and it stands still.
+TEST(LockingMpi, AVortexOfAFluidDecays)
+{
+  const auto energy = [](const std::string &f_bar, const std::string &bulk) {
+    return run_file("fluid/decaying_vortex",
+                    {"Grid/Cells=8, 8",
+                     "Materials/fluid/F-bar=" + f_bar,
+                     "Materials/fluid/Bulk modulus=" + bulk})
+             .at("kinetic_energy")
+             .back() /
+           (0.25 * std::exp(-4 * M_PI * M_PI * 0.02 * 0.5));
+  };
+  EXPECT_NEAR(energy("true", "1e3"), 1., 0.03);
+  EXPECT_NEAR(energy("true", "1e6"), 1., 0.03);
+  EXPECT_LT(energy("false", "1e3"), 0.8);
+  EXPECT_LT(energy("false", "1e6"), 1e-3);
 }

@@ -89,3 +89,52 @@ TEST(PlasticFlow, IsToldWhenItLocalises)
   EXPECT_NE(summary.find(localises), std::string::npos);
   EXPECT_NE(summary.find(trust), std::string::npos);
 }
+
+
+// Each body once, by name, and only where its yield stress falls; in the same
+// words by a run in two parts.
+TEST(PlasticFlowMpi, SofteningIsTold)
+{
+  const std::string path =
+    std::string(IMPM_SCENES) + "/materials/softening_bar.prm";
+  const int         id = dealii::Utilities::MPI::broadcast(MPI_COMM_WORLD,
+                                                   static_cast<int>(getpid()));
+  const std::string directory =
+    testing::TempDir() + "impm_softening_" + std::to_string(id);
+  const auto summary = [&](const std::string &hardening, const bool in_parts) {
+    const auto go_on = [&](const unsigned int n_steps, const bool restart) {
+      std::vector<std::string> overrides = {
+        "Grid/Cells=11, 1",
+        "General/Constants=h = 0.1",
+        "Output/Checkpoints/Interval in steps=10",
+        "Time/Largest number of steps=" + std::to_string(n_steps)};
+      for (const std::string name : {"steel", "weak"})
+        overrides.push_back("Materials/" + name + "/" + hardening);
+      ParameterFile file(path, overrides, declare_file);
+      Simulation<2> simulation(read_scene<2>(file.handler(), path),
+                               CommandLine::Verbosity::quiet,
+                               MPI_COMM_WORLD);
+      simulation.run(directory, "test", "", {}, restart);
+      MPI_Barrier(MPI_COMM_WORLD);
+    };
+    if (in_parts)
+      go_on(10, false);
+    go_on(20, in_parts);
+    const auto text = content_of(directory + "/summary.json");
+    MPI_Barrier(MPI_COMM_WORLD);
+    std::error_code ignored;
+    std::filesystem::remove_all(directory, ignored);
+    MPI_Barrier(MPI_COMM_WORLD);
+    return text;
+  };
+  const std::string falls = "Softening modulus=2e9",
+                    stays = "Softening modulus=0", told = "'middle' softens";
+  for (const bool in_parts : {false, true})
+    {
+      const auto text  = summary(falls, in_parts);
+      const auto first = text.find(told);
+      ASSERT_NE(first, std::string::npos) << text;
+      EXPECT_EQ(text.find(told, first + 1), std::string::npos) << text;
+    }
+  EXPECT_EQ(summary(stays, false).find("softens"), std::string::npos);
+}

@@ -132,7 +132,8 @@ namespace impm
                         "    set Density          = 1\n"
                         "    set Bulk modulus     = 1\n"
                         "    set Viscosity        = 0.3\n"
-                        "    set Second viscosity = 0.1\n");
+                        "    set Second viscosity = 0.1\n"
+                        "    set F-bar            = false\n");
   }
 
   inline const Overrides plastic = {"Materials/rubber/Law=log-strain von Mises",

@@ -8,6 +8,7 @@
 
 #include <impm/base/exceptions.h>
 #include <impm/materials/elastic_constants.h>
+#include <impm/materials/hardening/find_flow.h>
 #include <impm/materials/log_strain.h>
 #include <impm/materials/material.h>
 
@@ -186,6 +187,12 @@ namespace impm
                                response.tangent);
       return is_finite(response.potential) && is_finite(end.limit) &&
              end.pressure > 0;
+    }
+
+    bool
+    softens(const double *start, const double *end) const override
+    {
+      return has_fallen(start[preconsolidation], end[preconsolidation]);
     }
 
     Energy

@@ -3,6 +3,7 @@
 
 #include <deal.II/physics/transformations.h>
 
+#include <impm/materials/hardening/find_flow.h>
 #include <impm/materials/soil/drucker_prager.h>
 #include <impm/materials/soil/mohr_coulomb.h>
 
@@ -136,6 +137,13 @@ namespace impm
       if (with_tangent)
         LogStrain::lie_tangent(principal, end.response, response.tangent);
       return is_finite(response.potential);
+    }
+
+    bool
+    softens(const double *start, const double *end) const override
+    {
+      return has_fallen(limit.cohesion_after(start[plastic_strain]),
+                        limit.cohesion_after(end[plastic_strain]));
     }
 
     Material::Energy

@@ -127,8 +127,8 @@ namespace impm
     auto   evaluations =
       Utilities::MPI::sum(counts.stress_evaluations, communicator);
     archive &time &total &since_row &control &jump &work &resampled
-      &best_imbalance &adapted_step &off_grid &rigid &pictures &history
-        &reference &warnings &face_holds &pieces &widest_flow &counts
+      &best_imbalance &adapted_step &off_grid &rigid &pictures &history &
+        reference &warnings &face_holds &pieces &widest_flow &has_failed &counts
           .operator_applications &counts.tangents &counts.hierarchies &counts
           .solver_fallbacks &counts.direct_systems &counts
           .iterative_systems &evaluations &seconds &seconds_by;

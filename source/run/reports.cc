@@ -292,12 +292,14 @@ namespace impm
   Simulation<dim>::watch_failed_points()
   {
     const auto failed = failed_points(points);
+    has_failed.resize(failed.size());
     for (unsigned int b = 0; b < failed.size(); ++b)
       {
         report.failed_points += failed[b].n;
         report.failed_volume += failed[b].volume;
-        if (failed[b].n == 0)
+        if (failed[b].n == 0 || has_failed[b])
           continue;
+        has_failed[b] = true;
         std::ostringstream text;
         text << std::setprecision(3) << "body '" << scene.bodies[b].name
              << "' has begun to fail at t = " << time << " s: " << failed[b].n

@@ -299,6 +299,7 @@ namespace impm
     std::array<bool, 2 * dim> face_holds{}; ///< material, in the last step
     std::vector<unsigned int> pieces;       ///< by body, at the last row
     std::vector<double>       widest_flow;  ///< by body, see PlasticFlow
+    std::vector<char>         has_failed;   ///< by body, some of its points
     dealii::Timer             wall;
     std::string               directory, scene_name, parameters;
     StepReport                report; ///< of the step that is being made

@@ -192,6 +192,19 @@ namespace impm
   bool
   PointResponse<dim>::evaluate(const bool with_tangent)
   {
+    if (!with_tangent || !thermal.exists() ||
+        !std::exchange(is_first_tangent, false))
+      return evaluate_points(with_tangent);
+    thermal.is_at_start = true;
+    const bool fine     = evaluate_points(true);
+    thermal.is_at_start = false;
+    return fine && evaluate_points(false);
+  }
+
+  template <int dim>
+  bool
+  PointResponse<dim>::evaluate_points(const bool with_tangent)
+  {
     potential = 0;
     if (!average.measure(gradients, with_tangent))
       return false;

@@ -40,8 +40,12 @@ namespace impm
                   bool                       acts_in_the_middle,
                   unsigned long             &n_evaluations);
 
-    /** Evaluates the laws at `gradients`. Returns false when a point has no
-     * stress. */
+    /**
+     * Evaluates the laws at `gradients`. Returns false when a point has no
+     * stress. The first tangent of a step in which points expand by heat is
+     * that of the temperature at its start: stresses where nothing has moved
+     * yet are those of no equilibrium, and slender parts would seem to buckle.
+     */
     bool
     evaluate(bool with_tangent);
 
@@ -173,6 +177,10 @@ namespace impm
     bool
     evaluate_law(Batch &batch, bool with_tangent);
 
+    /** evaluate() without what the first tangent is. */
+    bool
+    evaluate_points(bool with_tangent);
+
     /** Changes the temperature where nothing moves. */
     bool
     evaluate_heating();
@@ -194,6 +202,7 @@ namespace impm
     std::vector<unsigned int>   entries, place_of_entry;
     std::vector<double>         tangents, histories;
     ThermalStrain<dim>          thermal;
+    bool                        is_first_tangent = true;
     const unsigned int          n_stress; ///< values of a stress, if carried
     std::vector<double>         end_stresses;
     std::vector<double>         thickening; ///< dF_33 in plane stress

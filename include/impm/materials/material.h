@@ -36,11 +36,11 @@ namespace impm
     double conductivity        = 0; ///< (W/(m K)); 0: nothing is conducted
 
     /** (K) in (x, y, z, t), or null. */
-    std::shared_ptr<dealii::FunctionParser<3>> prescribed_temperature;
+    std::shared_ptr<dealii::FunctionParser<3>> prescribed_temperature = nullptr;
     /** Whether that is a function of initial places. */
     bool temperature_is_initial = false;
     /** The initial temperature in (x, y, z), if heat is conducted, or null. */
-    std::shared_ptr<dealii::FunctionParser<3>> temperature_at_start;
+    std::shared_ptr<dealii::FunctionParser<3>> temperature_at_start = nullptr;
 
     double expansion               = 0; ///< of length (1/K)
     double stress_free_temperature = 0; ///< (K)

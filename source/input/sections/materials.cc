@@ -95,28 +95,26 @@ namespace impm
                   {"0", 0},
                   "(W/(m K)), of what conducts heat by the law of Fourier; 0: "
                   "nothing is conducted. What faces do is in section Heat.");
-      if (spec.conducts())
+      const std::string entry = "Initial temperature";
+      add_field(section,
+                entry,
+                steady,
+                geometry,
+                "(K); where heat is conducted an expression in x, y, z.",
+                "293.15",
+                spec.temperature_at_start);
+      if (spec.temperature_at_start) // which is read
         {
-          const std::string entry = "Initial temperature";
-          add_field(section,
-                    entry,
-                    steady,
-                    geometry,
-                    "(K), an expression in x, y, z.",
-                    "293.15",
-                    spec.temperature_at_start);
-          if (spec.temperature_at_start)
-            spec.initial_temperature =
-              spec.temperature_at_start->value(dealii::Point<3>());
-          if (section.is_read && !(spec.initial_temperature >= 0))
+          spec.initial_temperature =
+            spec.temperature_at_start->value(dealii::Point<3>());
+          if (!(spec.initial_temperature >= 0))
             section.refuse(entry,
-                           "allowed at the origin, too, is a number from 0 on");
+                           "allowed is a number from 0 on, also of an "
+                           "expression at the origin");
+          if (!spec.conducts() && !is_uniform(*spec.temperature_at_start))
+            section.refuse(entry,
+                           "allowed without a 'Conductivity' is one number");
         }
-      else
-        section.add("Initial temperature",
-                    spec.initial_temperature,
-                    {"293.15", 0},
-                    "(K).");
       section.add("Taylor-Quinney factor",
                   spec.heating_share,
                   {"1", 0, 1},

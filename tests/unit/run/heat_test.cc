@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "run_scene.h"
@@ -14,8 +15,9 @@ namespace
   path_of_run()
   {
     return testing::TempDir() + "impm_heat_" +
-           std::to_string(Utilities::MPI::broadcast(
-             MPI_COMM_WORLD, static_cast<int>(getpid())));
+           std::to_string(
+             Utilities::MPI::broadcast(MPI_COMM_WORLD,
+                                       static_cast<int>(getpid())));
   }
 
   /** The block, which conducts with a diffusivity of 0.01 m^2/s, for 1 s. */
@@ -43,10 +45,10 @@ TEST(HeatMpi, InsulatedHeatIsConserved)
 {
   const auto check = [](const auto &scene, const std::string &what) {
     SCOPED_TRACE(what);
-    const auto  columns = run(scene, MPI_COMM_WORLD, path_of_run());
-    const auto &heat    = columns.at("heat");
-    const auto &work    = columns.at("plastic_work");
-    const double scale  = 100; // of 50 K in all of the block
+    const auto   columns = run(scene, MPI_COMM_WORLD, path_of_run());
+    const auto  &heat    = columns.at("heat");
+    const auto  &work    = columns.at("plastic_work");
+    const double scale   = 100; // of 50 K in all of the block
     for (unsigned int row = 0; row < heat.size(); ++row)
       EXPECT_NEAR(heat[row] - work[row], heat[0] - work[0], 1e-12 * scale);
     EXPECT_NEAR(columns.at("heat_supplied").back(), 0, 1e-12 * scale);
@@ -66,25 +68,27 @@ TEST(HeatMpi, InsulatedHeatIsConserved)
                           conducting + sloped + held(2) + refined +
                             Overrides{"Grid/Method=" + method}),
             "hanging nodes, " + method);
-      check(scene_from<2>(block_scene("plane strain"),
-                          conducting + sloped + with_inertia +
-                            Overrides{"Grid/Method=" + method,
-                                      "Grid/Upper corner=2, 2",
-                                      "Grid/Cells=8, 8",
-                                      "Bodies/block/Velocity=0.7; 0.5 + 0.1*x"}),
-            "flying, " + method);
+      check(
+        scene_from<2>(block_scene("plane strain"),
+                      conducting + sloped + with_inertia +
+                        Overrides{"Grid/Method=" + method,
+                                  "Grid/Upper corner=2, 2",
+                                  "Grid/Cells=8, 8",
+                                  "Bodies/block/Velocity=0.7; 0.5 + 0.1*x"}),
+        "flying, " + method);
     }
-  check(scene_from<2>(block_scene("plane strain"),
-                      conducting + sloped + plastic + held(2) +
-                        Overrides{"Boundary conditions/top/Type=normal "
-                                  "displacement",
-                                  "Boundary conditions/top/Value=-0.3*t",
-                                  "Boundary conditions/top/Moves the grid=true",
-                                  "Boundary conditions/right/Type=free",
-                                  "Grid/Upper corner=2, 1",
-                                  "Grid/Cells=8, 4",
-                                  "Bodies/block/Point adaptation=split and merge"}),
-        "pressed");
+  check(
+    scene_from<2>(block_scene("plane strain"),
+                  conducting + sloped + plastic + held(2) +
+                    Overrides{"Boundary conditions/top/Type=normal "
+                              "displacement",
+                              "Boundary conditions/top/Value=-0.3*t",
+                              "Boundary conditions/top/Moves the grid=true",
+                              "Boundary conditions/right/Type=free",
+                              "Grid/Upper corner=2, 1",
+                              "Grid/Cells=8, 4",
+                              "Bodies/block/Point adaptation=split and merge"}),
+    "pressed");
   check(scene_from<3>(block_scene("3D"), conducting + sloped + held(3)), "3D");
 }
 
@@ -136,7 +140,7 @@ TEST(HeatMpi, OrdersInCellAndStep)
       conducting + held(2) +
       Overrides{"Grid/Cells=" + std::to_string(n) + "," + std::to_string(n),
                 "Materials/rubber/Initial temperature=300 + "
-                "100*sin(pi*x)*sin(pi*y)",
+                  "100*sin(pi*x)*sin(pi*y)",
                 "Time/Time step=" + std::to_string(1. / steps),
                 "Output/Probes=T",
                 "Output/T/Kind=mean",
@@ -150,8 +154,7 @@ TEST(HeatMpi, OrdersInCellAndStep)
              .back() -
            300;
   };
-  const double exact =
-    100 * 4 / (pi * pi) * std::exp(-2 * pi * pi * 0.01);
+  const double exact = 100 * 4 / (pi * pi) * std::exp(-2 * pi * pi * 0.01);
   // steps that go by the square of the cell
   const double coarse = std::abs(at(4, 8) - exact),
                middle = std::abs(at(8, 32) - exact),
@@ -186,7 +189,7 @@ TEST(HeatMpi, FlightIsRest)
   for (const std::string method : {"MPM", "GIMP"})
     {
       SCOPED_TRACE(method);
-      const auto rest = at("0; 0", method), flight = at("2; 0.5", method);
+      const auto   rest = at("0; 0", method), flight = at("2; 0.5", method);
       const double fall = rest.front() - rest.back();
       EXPECT_GT(fall, 5);
       EXPECT_NEAR(flight.back(), rest.back(), 0.02 * fall);
@@ -196,26 +199,26 @@ TEST(HeatMpi, FlightIsRest)
 
 TEST(HeatMpi, OneRankIsAsMany)
 {
-  const auto scene =
-    scene_from<2>(block_scene("axisymmetric"),
-                  conducting + sloped + plastic + held(2) +
-                    Overrides{"Grid/Method=GIMP",
-                              "Boundary conditions/top/Type=normal displacement",
-                              "Boundary conditions/top/Value=-0.1*t",
-                              "Boundary conditions/top/Moves the grid=true",
-                              "Boundary conditions/right/Type=free",
-                              "Grid/Upper corner=1.5, 1",
-                              "Grid/Cells=6, 4",
-                              "Materials/rubber/Thermal expansion=1e-4",
-                              "Materials/rubber/Stress-free temperature=300",
-                              "Heat/bottom/Temperature=300 + 50*t",
-                              "Heat/Source=3*x"});
+  const auto scene = scene_from<2>(
+    block_scene("axisymmetric"),
+    conducting + sloped + plastic + held(2) +
+      Overrides{"Grid/Method=GIMP",
+                "Boundary conditions/top/Type=normal displacement",
+                "Boundary conditions/top/Value=-0.1*t",
+                "Boundary conditions/top/Moves the grid=true",
+                "Boundary conditions/right/Type=free",
+                "Grid/Upper corner=1.5, 1",
+                "Grid/Cells=6, 4",
+                "Materials/rubber/Thermal expansion=1e-4",
+                "Materials/rubber/Stress-free temperature=300",
+                "Heat/bottom/Temperature=300 + 50*t",
+                "Heat/Source=3*x"});
   const auto many = run(scene, MPI_COMM_WORLD, path_of_run());
-  const auto one  = run(scene,
-                       MPI_COMM_SELF,
-                       path_of_run() + "_" +
-                         std::to_string(Utilities::MPI::this_mpi_process(
-                           MPI_COMM_WORLD)));
+  const auto one =
+    run(scene,
+        MPI_COMM_SELF,
+        path_of_run() + "_" +
+          std::to_string(Utilities::MPI::this_mpi_process(MPI_COMM_WORLD)));
   expect_near(many, one);
   EXPECT_GT(many.at("heat_supplied").back(), 1);
 }
@@ -231,7 +234,8 @@ TEST(HeatMpi, WhatIsSuppliedIsThere)
                                   "Heat/left/Temperature=300 + 50*t"}),
         MPI_COMM_WORLD,
         path_of_run());
-  const auto &heat = columns.at("heat"), &supplied = columns.at("heat_supplied");
+  const auto &heat     = columns.at("heat"),
+             &supplied = columns.at("heat_supplied");
   for (unsigned int row = 0; row < heat.size(); ++row)
     EXPECT_NEAR(heat[row], supplied[row], 1e-11 * supplied.back());
 }

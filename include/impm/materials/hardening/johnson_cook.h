@@ -146,7 +146,8 @@ namespace impm
         return select(softened > 0., Number(softened * cold), Number(0.));
       }
 
-      /** Its integral, and the plastic work of the past (J/m^3). */
+      /** Its integral, and the plastic work of the past (J/m^3): of the
+       * potential of a step. */
       Number
       work(const Number &flow) const
       {
@@ -159,6 +160,21 @@ namespace impm
                         done);
         return work_before +
                select(flow == 0., Number(0.), Number(softened * done));
+      }
+
+      /**
+       * What a flow at the rate of the step, and the past, have dissipated
+       * (J/m^3). The integral above is what the step minimizes: on the way it
+       * meets slower rates, which no point has had, C / (1 + C ln) too little
+       * however short a step is.
+       */
+      Number
+      dissipated(const Number &flow) const
+      {
+        return work_before +
+               select(flow == 0.,
+                      Number(0.),
+                      Number(softened * slow_work(flow) * by_rate(flow)));
       }
 
       const Number before; ///< alpha at the start
@@ -238,13 +254,13 @@ namespace impm
 
     template <typename Number>
     void
-    store(const Limit<Number>          &limit,
-          const Number                 &flow,
-          const Number                 &work,
+    store(const Limit<Number> &limit,
+          const Number        &flow,
+          const Number & /*potential*/,
           const Places<Number, double> &trial_history) const
     {
       write(limit.before + flow, trial_history, plastic_offset);
-      write(work, trial_history, work_offset);
+      write(limit.dissipated(flow), trial_history, work_offset);
     }
 
     /** At the reference rate and the temperature of now (Pa). */

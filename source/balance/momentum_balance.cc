@@ -260,6 +260,8 @@ namespace impm
     for (const double entry : diagonal)
       largest = std::max(largest, entry);
     largest = Utilities::MPI::max(largest, parts.discretization.communicator);
+    if (largest == 0) // nothing is stiff, as where all grains have come apart
+      largest = 1;
     for (unsigned int i = 0; i < diagonal.locally_owned_size(); ++i)
       if (double &entry = diagonal.local_element(i); entry == 0)
         entry = unknowns.is_held(i) ? largest :

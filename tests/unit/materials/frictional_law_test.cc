@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "law_fixture.h"
+#include "law_scene.h"
 #include "material_fixture.h"
 
 using namespace dealii;
@@ -353,4 +353,35 @@ TEST(FrictionalLaw, TangentsWhereStrainsMeet)
           };
           EXPECT_LT(tangent_error(respond, F, 1e-4), 1e-9) << apart;
         }
+}
+
+
+// Sand that flies apart has inertia only, beside faces that hold it: no stress
+// and a gap that is all of the change of volume.
+TEST(FrictionalLawMpi, SandFliesApart)
+{
+  Model<2>     model(law_scene("plane strain",
+                           {"Law = log-strain Mohr-Coulomb",
+                                "Density = 1",
+                                "Young's modulus = 1"}),
+                 {"Stabilization/Ghost penalty=0",
+                      "Geometry/box/Upper corner=0.75, 0.75",
+                      "Boundary conditions/left/Type=slip",
+                      "Boundary conditions/bottom/Type=slip",
+                      "Bodies/block/Velocity=x; 2*y",
+                      "Time/Integrator=theta",
+                      "Time/Time step=0.05"});
+  impm::Vector u;
+  const auto   result = model.solve(u);
+  ASSERT_TRUE(result.converged) << result.failure;
+  model.commit(u);
+  const auto offset =
+    model.points.offset_history + model.points.history_layout.offset("opening");
+  for (unsigned int p = 0; p < model.points.size(); ++p)
+    {
+      const double volume = determinant(model.points.layout.load_tensor(
+        model.points.fields(p) + model.points.offset_deformation));
+      EXPECT_GT(volume, 1.05);
+      EXPECT_NEAR(model.points.fields(p)[offset], std::log(volume), 1e-13);
+    }
 }

@@ -46,8 +46,10 @@ def main():
     figure, axes = plt.subplots(1, 4, figsize=(14, 3.6), constrained_layout=True)
 
     x, field = read(pictures(f"{output}/bimetal")[-1][1])
-    dots = axes[0].scatter(1e3 * x[:, 0], 1e3 * x[:, 1], s=1,
-                           c=1e-6 * field("von_mises_stress"), cmap="viridis")
+    stress = 1e-6 * field("von_mises_stress")
+    dots = axes[0].scatter(1e3 * x[:, 0], 1e3 * x[:, 1], s=40, marker="s",
+                           c=stress, cmap="viridis", linewidth=0,
+                           vmax=np.percentile(stress, 99))  # but for the pin
     figure.colorbar(dots, ax=axes[0], label="von Mises stress (MPa)")
     axes[0].set(title="brass and steel, 100 K hotter", xlabel="x (mm)",
                 ylabel="y (mm)")

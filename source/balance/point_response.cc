@@ -52,6 +52,7 @@ namespace impm
           0)
     , end_stresses(points.size() * n_stress)
     , thickening(is_plane_stress ? points.size() : 0, 1.)
+    , traces(thermal.exists() ? points.size() : 0)
   {
     const unsigned int n = kinematics.size;
     const bool         symmetric =
@@ -155,6 +156,11 @@ namespace impm
                   [&](const double value, unsigned int) {
                     potential += value;
                   });
+    if (thermal.exists())
+      batch.scatter(volume * trace(response.kirchhoff_stress),
+                    [&](const double value, const unsigned int p) {
+                      traces[p] = value;
+                    });
     if (n_stress > 0)
       {
         // that of a linearized law counts from the volume at the start
@@ -328,7 +334,8 @@ namespace impm
         thermal.is_at_start = false;
         start_stresses      = stresses;
         start_potential     = potential;
-        return fine && evaluate_heating();
+        start_traces        = traces;
+        return fine;
       }
     const Tensor<2, 3> unit = unit_symmetric_tensor<3>();
     start_stresses.resize(stresses.size());
@@ -338,32 +345,11 @@ namespace impm
                             unit,
                             points.initial_volume(p),
                             &start_stresses[p * kinematics.size]);
-    return evaluate_heating();
-  }
-
-  template <int dim>
-  bool
-  PointResponse<dim>::evaluate_heating()
-  {
-    if (!thermal.exists())
-      return true;
-    if (!evaluate(false))
-      return false;
-    start_potential = potential;
-    for (unsigned int p = 0; p < points.size(); ++p)
-      if (const auto &law = points.material(p); law.expands())
-        {
-          const auto F      = points.layout.load_tensor(points.fields(p) +
-                                                   points.offset_deformation);
-          const auto before = law.energy_of_point(F,
-                                                  points.fields(p) +
-                                                    points.offset_history),
-                     after =
-                       law.energy_of_point(increment(p) * F, trial_history(p));
-          work_of_heat +=
-            points.initial_volume(p) * (after.stored + after.dissipated -
-                                        before.stored - before.dissipated);
-        }
+    start_traces.resize(traces.size());
+    for (unsigned int p = 0; p < start_traces.size(); ++p)
+      start_traces[p] =
+        points.initial_volume(p) * trace(points.layout.load_symmetric(
+                                     points.fields(p) + points.offset_stress));
     return true;
   }
 
@@ -375,6 +361,16 @@ namespace impm
     double      sum = 0;
     for (unsigned int i = 0; i < gradients.size(); ++i)
       sum += 0.5 * (start_stresses[i] + end[i]) * gradients[i];
+    return sum;
+  }
+
+  template <int dim>
+  double
+  PointResponse<dim>::work_of_heat() const
+  {
+    double sum = 0;
+    for (unsigned int p = 0; p < traces.size(); ++p)
+      sum -= 0.5 * (start_traces[p] + traces[p]) * thermal.change(p);
     return sum;
   }
 

@@ -27,6 +27,8 @@ namespace impm
     const auto &motion = problem->motion;
     double      gain =
       problem->response.potential - problem->response.start_potential;
+    if (Utilities::MPI::this_mpi_process(communicator) == 0)
+      gain -= step_work.heat; // of all ranks
     if (problem->contact)
       gain += problem->contact->energy_gain();
     for (unsigned int i = 0; i < motion.velocity.locally_owned_size(); ++i)

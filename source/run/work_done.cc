@@ -93,7 +93,7 @@ namespace impm
                 motion->rotation_vector());
         step.last_moments[b] = moment;
       }
-    step.heat     = Utilities::MPI::sum(problem.response.work_of_heat, comm);
+    step.heat     = Utilities::MPI::sum(problem.response.work_of_heat(), comm);
     step.internal = Utilities::MPI::sum(problem.response.work(), comm);
     for (const Term *term : problem.stabilization())
       step.stabilization += Utilities::MPI::sum(term->energy(u, u), comm);

@@ -51,8 +51,7 @@ namespace impm
 
     /**
      * Finds `start_stresses`, while the gradients are zero, whatever the
-     * length of the step, and what heat does then, before anything moves.
-     * Returns false as evaluate() does.
+     * length of the step. Returns false as evaluate() does.
      */
     bool
     evaluate_start();
@@ -128,6 +127,8 @@ namespace impm
                       histories,
                       end_stresses,
                       thickening,
+                      traces,
+                      start_traces,
                       turns,
                       acting_stresses) +
              average.memory_consumption();
@@ -141,6 +142,14 @@ namespace impm
     double
     work() const;
 
+    /**
+     * What heat has given to the points in the step (J): where they would
+     * expand freely by d theta, the energy of a law at rest changes by
+     * - tr(tau) d theta. By the trapezoidal rule.
+     */
+    double
+    work_of_heat() const;
+
     /** P, or what acts instead, which the tangent belongs to. */
     const std::vector<double> &
     acting() const
@@ -150,12 +159,7 @@ namespace impm
 
     std::vector<double> gradients, stresses, start_stresses;
     double              potential = 0; ///< sum of V0 times those of the laws
-    /** Likewise where nothing has moved yet but the temperature is that of the
-     * end, if not explicit. */
-    double start_potential = 0;
-    /** By how much that change of temperature raises the energy of the points:
-     * what heat gives to their motion (J). */
-    double work_of_heat = 0;
+    double              start_potential = 0; ///< likewise, if not explicit
 
   private:
     /** Points of one law, on their way through evaluate(). */
@@ -181,10 +185,6 @@ namespace impm
     bool
     evaluate_points(bool with_tangent);
 
-    /** Changes the temperature where nothing moves. */
-    bool
-    evaluate_heating();
-
     /** Turns the response into stresses, tangents and potential. */
     void
     carry_back(Batch &batch, bool with_tangent);
@@ -207,6 +207,7 @@ namespace impm
     std::vector<double>         end_stresses;
     std::vector<double>         thickening; ///< dF_33 in plane stress
     std::vector<double>         turns, acting_stresses; ///< T and P'
+    std::vector<double>         traces, start_traces;   ///< V0 tr(tau) (J)
     mutable std::vector<double> coupled;                ///< of apply_tangent
   };
 } // namespace impm

@@ -50,9 +50,14 @@ namespace impm
     Lanes
     change(const PointBatch &batch) const
     {
-      return batch.gather([&](const unsigned int p) {
-        return is_at_start ? 0. : end[p] - start[p];
-      });
+      return batch.gather(
+        [&](const unsigned int p) { return is_at_start ? 0. : change(p); });
+    }
+
+    double
+    change(const unsigned int point) const
+    {
+      return end[point] - start[point];
     }
 
     /** Takes it out of what the law is asked for: of dF and of F at t_n. */

@@ -151,7 +151,13 @@ namespace
                              -2 * theta * (1 - 2 * nu) / (1 - nu) :
                              -3 * theta);
     for (unsigned int p = 0; p < model.points.size(); ++p)
-      EXPECT_LT((stress(model, p) - expected).norm(), tolerance);
+      {
+        // sigma of the linear laws counts by the volume now
+        const double J = law.find("linear") == 0 ?
+                           determinant(deformation_gradient(model.points, p)) :
+                           1.;
+        EXPECT_LT((stress(model, p) - J * expected).norm(), tolerance);
+      }
   }
 
   /** The tangent at a second step, of a random increment. */
@@ -261,18 +267,21 @@ TEST(ThermalStrain, TangentsAreDerivatives)
 
 
 // A step begins with the stress that the one before has left, in whatever
-// thickness plane stress has found, and what heat does then is work of its own.
+// thickness plane stress has found; but for the linear laws, whose stress
+// counts by the volume at the start.
 TEST(ThermalStrain, StepsBeginWhereTheOneBeforeHasEnded)
 {
   for (const auto &law : laws)
     for (const std::string geometry : {"plane strain", "plane stress"})
       {
+        if (geometry == "plane stress" && law.find("linear") == 0)
+          continue;
         SCOPED_TRACE(geometry + ", " + law);
         Model<2>     model(law_scene(geometry, hot(law)), held_block(2));
         impm::Vector u;
         ASSERT_TRUE(model.solve(u).converged);
         const auto before = model.problem->response.stresses;
-        EXPECT_GT(model.problem->response.work_of_heat, 1e-4);
+        EXPECT_GT(model.problem->response.work_of_heat(), 1e-4);
         model.commit(u);
         model.begin_step();
         const auto &after = model.problem->response.start_stresses;

@@ -94,6 +94,28 @@ TEST(CamClay, EntriesThatContradict)
 }
 
 
+// Below the limit the stress derives from the stored energy.
+TEST(CamClay, HyperelasticBelowTheLimit)
+{
+  std::mt19937 generator(4);
+  const auto   named   = clay(1e4);
+  const auto   respond = [&](const Tensor<2, 3> &F) {
+    LawPoint point(named);
+    EXPECT_TRUE(point.evaluate(F));
+    EXPECT_EQ(point.trial_history[point.layout.offset("plastic_work")], 0.);
+    point.response.potential =
+      named.law->energy(F, point.trial_history.data()).stored;
+    return point.response;
+  };
+  for (unsigned int n = 0; n < 10; ++n)
+    {
+      const auto F = random_gradient(generator, false, 0.02);
+      EXPECT_LT(potential_error(respond, F, 1e-4),
+                1e-8 * respond(F).kirchhoff_stress.norm());
+    }
+}
+
+
 TEST(CamClay, StartsUnderItsPressure)
 {
   const auto named = clay(2.);

@@ -127,10 +127,12 @@ namespace impm
             conductance[p]   = (problem.dt * material.conductivity *
                               points.initial_volume(p) * determinant(F)) *
                              (to_start[p] * transpose(to_start[p]));
-            is_known = is_known && std::isfinite(temperature[p]);
+            is_known =
+              is_known && std::isfinite(temperature[p]) && temperature[p] >= 0;
           }
         if (Utilities::MPI::min(is_known ? 1 : 0, points.communicator) == 0)
-          throw ComputationError(now() + "a temperature is no finite number");
+          throw ComputationError(
+            now() + "a temperature is no finite number from 0 K on");
       }
 
       /** A scalar of the nodes at a point. */
@@ -311,6 +313,7 @@ namespace impm
         for (unsigned int n = 0; n < n_nodes; ++n)
           {
             is_known = is_known && std::isfinite(held.local_element(dim * n)) &&
+                       held.local_element(dim * n) >= 0 &&
                        std::isfinite(source.local_element(dim * n));
             const bool has_material = capacity.local_element(dim * n) > 0 ||
                                       diagonal.local_element(dim * n) > 0;
@@ -322,7 +325,8 @@ namespace impm
         if (Utilities::MPI::min(is_known ? 1 : 0, points.communicator) == 0)
           throw ComputationError(
             now() +
-            "a temperature or a source in section Heat is no finite number");
+            "a temperature in section Heat is no finite number from 0 K on, or a "
+            "source is no finite number");
       }
 
       /** dt K field, with hanging nodes condensed. */

@@ -64,7 +64,8 @@ namespace impm
                          points.initial_position(p) :
                          Point<dim>(particle.get_location())));
             trial[material.temperature_offset] = temperature;
-            is_finite = is_finite && std::isfinite(temperature);
+            is_finite =
+              is_finite && std::isfinite(temperature) && temperature >= 0;
           }
         else if (material.expands())
           temperature = material.temperature(
@@ -86,7 +87,7 @@ namespace impm
     if (Utilities::MPI::min(is_finite ? 1 : 0, points.communicator) == 0)
       throw ComputationError("at t = " + Utilities::to_string(end_time) +
                              " s: a 'Prescribed temperature' is no finite "
-                             "number");
+                             "number from 0 K on");
   }
 
   template <int dim>

@@ -342,3 +342,14 @@ TEST(ThermalStrain, WhatContradictsIsRefused)
                     "Conductivity = -1"}),
            "Conductivity");
 }
+
+
+TEST(ThermalStrain, NoTemperatureIsBelowZero)
+{
+  for (const std::string temperature : {"300 - 400*t", "300/(t - 1)"})
+    {
+      auto     lines = hot("log-strain elastic", temperature);
+      Model<2> model(law_scene("plane strain", lines), {"Time/Time step=1"});
+      EXPECT_THROW(model.begin_step(), ComputationError) << temperature;
+    }
+}

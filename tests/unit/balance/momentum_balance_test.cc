@@ -458,7 +458,7 @@ TEST(MomentumBalance, MeanVolumeOfASpatialLawWithoutAPotential)
                                scene.loads.tractions,
                                grid);
       unsigned long       n_evaluations = 0;
-      PointResponse<2>    response(points, 1., false, n_evaluations);
+      PointResponse<2>    response(points, 1., 1., false, n_evaluations);
       const unsigned int  n = response.gradients.size();
       std::mt19937        generator(1);
       std::vector<double> at(n), change(n), tangent(n), back(n);

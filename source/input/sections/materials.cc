@@ -46,19 +46,18 @@ namespace impm
                   const std::optional<FailureSpec> &failure,
                   PointLayout                      &history)
     {
-      std::unique_ptr<const Material> material;
-      section.inside([&](auto &prm) {
-        if (failure)
-          {
-            PointLayout own(history.geometry);
-            law.create(prm, spec, own);
-            if (!own.find("equivalent_plastic_strain"))
-              section.refuse("Failure",
-                             "which needs a law that yields: allowed with '" +
-                               law.name + "' is none");
-          }
-        material = law.create(prm, spec, history);
-      });
+      const auto create = [&](PointLayout &layout) {
+        std::unique_ptr<const Material> material;
+        section.inside(
+          [&](auto &prm) { material = law.create(prm, spec, layout); });
+        return material;
+      };
+      PointLayout own(history.geometry);
+      if (failure && create(own) && !own.find("equivalent_plastic_strain"))
+        section.refuse("Failure",
+                       "which needs a law that yields: allowed with '" +
+                         law.name + "' is none");
+      auto material = create(history);
       if (failure)
         return std::make_shared<FailingLaw>(std::move(material),
                                             history,

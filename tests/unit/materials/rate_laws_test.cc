@@ -293,13 +293,16 @@ TEST(AllLaws, RefuseWhatHasNoStress)
 
 TEST(JaumannLaw, StressTurnsWithTheMaterial)
 {
-  std::mt19937 generator(4);
   for (const auto &named : all_laws())
     if (named.law->form() == Material::Form::full)
       for (const auto &q : {in_plane, in_space, some_other})
         {
-          LawPoint point(named);
+          std::mt19937 generator(4);
+          LawPoint     point(named);
           give_a_past(point, generator);
+          if (point.law.remaining_stiffness(point.history.data()) <
+              point.law.stiffness())
+            continue; // what fails loses its stress in the next step
           const auto before = point.cauchy_stress();
           if (named.law->is_solid())
             point.dt = 0; // or a stress that depends on the rate relaxes

@@ -118,8 +118,10 @@ namespace impm
     // What cancels in the residual at most leaves this behind. A deformation
     // near one and differences of u have errors of their own, however small
     // the stress is that comes of them.
+    // An increment of more than a million lengths is none: singular systems
+    // have such solutions, whose noise would pass for convergence.
     const double strain =
-      parts.end_weight * (1 + u.linfty_norm() / length_scale());
+      parts.end_weight * (1 + std::min(u.linfty_norm() / length_scale(), 1e6));
     const auto at_work = norm.largest_nearby(
       std::vector<double>(sums.begin() + n, sums.begin() + 2 * n));
     result.parts.resize(n);

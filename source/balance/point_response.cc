@@ -5,6 +5,8 @@
 #include <impm/balance/point_response.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 namespace impm
@@ -421,8 +423,12 @@ namespace impm
         for (unsigned int b = 0; b < n; ++b)
           symmetric(a, b) = 0.5 * (matrix(a, b) + matrix(b, a));
       const double bound = symmetric.frobenius_norm();
+      if (!std::isfinite(bound))
+        return; // the step is told of it by its residual
+      // LAPACK finds all vectors if it is to be as accurate as it can.
+      const double accuracy = 2 * std::numeric_limits<double>::min();
       symmetric.compute_eigenvalues_symmetric(
-        -2 * bound, 2 * bound, 1e-14 * bound, values, vectors);
+        -2 * bound, 2 * bound, accuracy, values, vectors);
       if (values.size() < n || values[0] >= 0)
         return;
       matrix = 0;

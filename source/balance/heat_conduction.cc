@@ -135,20 +135,39 @@ namespace impm
             now() + "a temperature is no finite number from 0 K on");
       }
 
+      /** Hands out the nodes that a point touches, once for each cell, with the
+       * value and the slope of the shape function. */
+      template <typename Action>
+      void
+      for_each_node(const unsigned int p, const Action &action) const
+      {
+        for (unsigned int k = footprints.first[p]; k < footprints.first[p + 1];
+             ++k)
+          {
+            const unsigned int e     = footprints.entries[k];
+            const auto        &nodes = footprints.nodes_of_entry(e);
+            for (unsigned int v = 0; v < nodes.size(); ++v)
+              {
+                Tensor<1, dim> slope;
+                std::copy_n(footprints.gradient(e) + dim * v,
+                            dim,
+                            slope.begin_raw());
+                action(nodes[v], footprints.value(e)[v], slope);
+              }
+          }
+      }
+
       /** A scalar of the nodes at a point. */
       double
       value(const unsigned int p, const Vector &field) const
       {
         double sum = 0;
-        for (unsigned int k = footprints.first[p]; k < footprints.first[p + 1];
-             ++k)
-          {
-            const unsigned int e      = footprints.entries[k];
-            const auto        &nodes  = footprints.nodes_of_entry(e);
-            const double      *values = footprints.value(e);
-            for (unsigned int v = 0; v < nodes.size(); ++v)
-              sum += values[v] * field.local_element(dim * nodes[v]);
-          }
+        for_each_node(p,
+                      [&](const unsigned int node,
+                          const double       share,
+                          const auto & /*slope*/) {
+                        sum += share * field.local_element(dim * node);
+                      });
         return sum;
       }
 
@@ -158,17 +177,10 @@ namespace impm
       gradient(const unsigned int p, const Vector &field) const
       {
         Tensor<1, dim> sum;
-        for (unsigned int k = footprints.first[p]; k < footprints.first[p + 1];
-             ++k)
-          {
-            const unsigned int e      = footprints.entries[k];
-            const auto        &nodes  = footprints.nodes_of_entry(e);
-            const double      *slopes = footprints.gradient(e);
-            for (unsigned int v = 0; v < nodes.size(); ++v)
-              for (unsigned int d = 0; d < dim; ++d)
-                sum[d] +=
-                  slopes[dim * v + d] * field.local_element(dim * nodes[v]);
-          }
+        for_each_node(p,
+                      [&](const unsigned int node, double, const auto &slope) {
+                        sum += field.local_element(dim * node) * slope;
+                      });
         return sum;
       }
 
@@ -202,17 +214,13 @@ namespace impm
         double       whole = 0;
         for (const auto &particle : points.sorted.particles)
           {
-            const unsigned int first = footprints.first[p],
-                               last  = footprints.first[p + 1];
             Tensor<1, dim> place;
-            for (unsigned int k = first; k < last; ++k)
-              {
-                const unsigned int e     = footprints.entries[k];
-                const auto        &nodes = footprints.nodes_of_entry(e);
-                for (unsigned int v = 0; v < nodes.size(); ++v)
-                  place +=
-                    footprints.value(e)[v] * (places[nodes[v]] - Point<dim>());
-              }
+            for_each_node(p,
+                          [&](const unsigned int node,
+                              const double       share,
+                              const auto & /*slope*/) {
+                            place += share * (places[node] - Point<dim>());
+                          });
             all += heat_capacity[p] * temperature[p];
             whole += heat_capacity[p];
             const auto slope =
@@ -222,26 +230,22 @@ namespace impm
                 problem.dt * points.mass(p) *
                   heat.source->value(particle.get_location()) :
                 0.;
-            for (unsigned int k = first; heat_capacity[p] > 0 && k < last; ++k)
-              {
-                const unsigned int e      = footprints.entries[k];
-                const auto        &nodes  = footprints.nodes_of_entry(e);
-                const double      *slopes = footprints.gradient(e);
-                for (unsigned int v = 0; v < nodes.size(); ++v)
-                  {
-                    const unsigned int i     = dim * nodes[v];
-                    const double       share = footprints.value(e)[v];
-                    const double       part  = share * heat_capacity[p];
-                    capacity.local_element(i) += part;
-                    start.local_element(i) +=
-                      part * (temperature[p] + slope * (places[nodes[v]] -
-                                                        Point<dim>() - place));
-                    source.local_element(i) += share * given;
-                    Tensor<1, dim> g;
-                    std::copy_n(slopes + dim * v, dim, g.begin_raw());
-                    diagonal.local_element(i) += g * (conductance[p] * g);
-                  }
-              }
+            if (heat_capacity[p] > 0)
+              for_each_node(p,
+                            [&](const unsigned int node,
+                                const double       share,
+                                const auto        &g) {
+                              const unsigned int i = dim * node;
+                              const double part    = share * heat_capacity[p];
+                              capacity.local_element(i) += part;
+                              start.local_element(i) +=
+                                part *
+                                (temperature[p] +
+                                 slope * (places[node] - Point<dim>() - place));
+                              source.local_element(i) += share * given;
+                              diagonal.local_element(i) +=
+                                g * (conductance[p] * g);
+                            });
             ++p;
           }
         for (Vector *vector : {&capacity, &start, &source, &diagonal})
@@ -341,18 +345,10 @@ namespace impm
             if (heat_capacity[p] == 0)
               continue;
             const auto flux = conductance[p] * gradient(p, all);
-            for (unsigned int k = footprints.first[p];
-                 k < footprints.first[p + 1];
-                 ++k)
-              {
-                const unsigned int e      = footprints.entries[k];
-                const auto        &nodes  = footprints.nodes_of_entry(e);
-                const double      *slopes = footprints.gradient(e);
-                for (unsigned int v = 0; v < nodes.size(); ++v)
-                  for (unsigned int d = 0; d < dim; ++d)
-                    result.local_element(dim * nodes[v]) +=
-                      slopes[dim * v + d] * flux[d];
-              }
+            for_each_node(
+              p, [&](const unsigned int node, double, const auto &slope) {
+                result.local_element(dim * node) += slope * flux;
+              });
           }
         result.compress(VectorOperation::add);
         discretization.condense_hanging(result);

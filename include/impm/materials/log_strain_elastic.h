@@ -2,6 +2,7 @@
 #define impm_materials_log_strain_elastic_h
 
 #include <deal.II/physics/elasticity/kinematics.h>
+#include <deal.II/physics/transformations.h>
 
 #include <impm/materials/elastic_constants.h>
 #include <impm/materials/log_strain.h>
@@ -98,6 +99,26 @@ namespace impm
     if (with_tangent)
       LogStrain::lie_tangent(principal, stress, response.tangent);
     return all_of(is_finite(response.potential));
+  }
+
+  /**
+   * What a step makes of an elastic left Cauchy-Green tensor that is kept in
+   * the history, if all of it is elastic, and its principal strains. False when
+   * there is no stress.
+   */
+  template <typename Number>
+  bool
+  find_trial(const Material::BasicStep<Number>     &step,
+             const HistoryTensor                   &elastic,
+             dealii::SymmetricTensor<2, 3, Number> &trial,
+             LogStrain::PrincipalStrains<Number>   &principal)
+  {
+    if (!all_of(dealii::determinant(step.increment) > 0.) ||
+        !all_of(dealii::determinant(step.total) > 0.))
+      return false;
+    trial = dealii::Physics::Transformations::Contravariant::push_forward(
+      elastic.load(step.history), step.increment);
+    return LogStrain::decompose(trial, principal);
   }
 
   /** Hencky's elasticity from the total deformation; keeps no history. */

@@ -1,8 +1,6 @@
 #ifndef impm_materials_log_strain_von_mises_h
 #define impm_materials_log_strain_von_mises_h
 
-#include <deal.II/physics/transformations.h>
-
 #include <impm/materials/hardening/find_flow.h>
 #include <impm/materials/log_strain_elastic.h>
 
@@ -64,15 +62,9 @@ namespace impm
                  const bool               with_tangent,
                  BasicResponse<Number>   &response) const
     {
-      if (!all_of(dealii::determinant(step.increment) > 0.) ||
-          !all_of(dealii::determinant(step.total) > 0.))
-        return false;
-
-      const auto trial =
-        dealii::Physics::Transformations::Contravariant::push_forward(
-          elastic.load(step.history), step.increment);
-      LogStrain::PrincipalStrains<Number> principal;
-      if (!LogStrain::decompose(trial, principal))
+      dealii::SymmetricTensor<2, 3, Number> trial;
+      LogStrain::PrincipalStrains<Number>   principal;
+      if (!find_trial(step, elastic, trial, principal))
         return false;
 
       auto                  stress = elasticity.stress(principal.strain);

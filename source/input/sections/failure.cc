@@ -1,5 +1,6 @@
 #include <impm/input/sections/failure.h>
 
+#include <cmath>
 #include <tuple>
 
 namespace impm
@@ -45,6 +46,15 @@ namespace impm
         if (kind == Kind::johnson_cook)
           std::tie(strain.d1, strain.d2, strain.d3, strain.d4, strain.d5) =
             std::tie(d[0], d[1], d[2], d[3], d[4]);
+        // Powers beyond all numbers would let nothing fail, without a word.
+        const double slow = strain.d1 + strain.d2 * std::exp(strain.d3 / 3);
+        if (kind == Kind::johnson_cook &&
+            !(slow >= FailureStrain::smallest && std::isfinite(slow)))
+          section.refuse(
+            "Failure constants",
+            "allowed is D1 + D2 exp(D3 / 3), the strain of slow "
+            "and cold tension, from " +
+              dealii::Utilities::to_string(FailureStrain::smallest) + " on");
         // as in Johnson & Cook's hardening, which it may stand beside
         section.add("Reference rate",
                     strain.reference_rate,

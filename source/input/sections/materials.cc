@@ -91,7 +91,7 @@ namespace impm
     {
       section.add("Conductivity",
                   spec.conductivity,
-                  {"0", 0},
+                  {"0", 0, 1e100},
                   "(W/(m K)), of what conducts heat by the law of Fourier; 0: "
                   "nothing is conducted. What faces do is in section Heat.");
       const std::string entry = "Initial temperature";

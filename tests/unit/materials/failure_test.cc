@@ -203,6 +203,13 @@ TEST(Failure, WhatIsRefused)
                cook + Overrides{"Materials/rubber/Failure constants=1, 2"},
                "Materials/rubber/Failure constants",
                {"'1, 2'", "5"});
+  for (const std::string constants :
+       {"-1, 0, 0, 0, 0", "1, 2, 1e5, 0, 0", "1, -3, 0, 0, 0"})
+    expect_blame(plane,
+                 cook +
+                   Overrides{"Materials/rubber/Failure constants=" + constants},
+                 "Materials/rubber/Failure constants",
+                 {"D1 + D2 exp(D3 / 3)"});
   // of the other kind
   expect_blame(plane,
                cook + Overrides{"Materials/rubber/Failure strain=1"},

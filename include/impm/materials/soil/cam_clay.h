@@ -4,13 +4,9 @@
 #include <deal.II/base/parameter_handler.h>
 #include <deal.II/base/patterns.h>
 
-#include <deal.II/physics/transformations.h>
-
 #include <impm/base/exceptions.h>
-#include <impm/materials/elastic_constants.h>
 #include <impm/materials/hardening/find_flow.h>
-#include <impm/materials/log_strain.h>
-#include <impm/materials/material.h>
+#include <impm/materials/log_strain_elastic.h>
 
 #include <algorithm>
 #include <cmath>
@@ -142,14 +138,9 @@ namespace impm
                  const bool  with_tangent,
                  Response   &response) const override
     {
-      if (!(dealii::determinant(step.increment) > 0) ||
-          !(dealii::determinant(step.total) > 0))
-        return false;
-      const auto trial =
-        dealii::Physics::Transformations::Contravariant::push_forward(
-          elastic.load(step.history), step.increment);
-      LogStrain::PrincipalStrains<double> principal;
-      if (!LogStrain::decompose(trial, principal))
+      dealii::SymmetricTensor<2, 3, double> trial;
+      LogStrain::PrincipalStrains<double>   principal;
+      if (!find_trial(step, elastic, trial, principal))
         return false;
 
       const auto [volume, distortion] = invariants(principal.strain);

@@ -1,8 +1,6 @@
 #ifndef impm_materials_soil_frictional_law_h
 #define impm_materials_soil_frictional_law_h
 
-#include <deal.II/physics/transformations.h>
-
 #include <impm/materials/hardening/find_flow.h>
 #include <impm/materials/soil/drucker_prager.h>
 #include <impm/materials/soil/mohr_coulomb.h>
@@ -85,14 +83,9 @@ namespace impm
                  const bool            with_tangent,
                  Material::Response   &response) const override
     {
-      if (!(dealii::determinant(step.increment) > 0) ||
-          !(dealii::determinant(step.total) > 0))
-        return false;
-      const auto trial =
-        dealii::Physics::Transformations::Contravariant::push_forward(
-          elastic.load(step.history), step.increment);
-      LogStrain::PrincipalStrains<double> principal;
-      if (!LogStrain::decompose(trial, principal))
+      dealii::SymmetricTensor<2, 3, double> trial;
+      LogStrain::PrincipalStrains<double>   principal;
+      if (!find_trial(step, elastic, trial, principal))
         return false;
 
       // A cohesion that has changed waits for a step that takes time.

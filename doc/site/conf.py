@@ -7,6 +7,7 @@ copyright = "The impm_dealii authors"
 extensions = ["myst_parser"]
 source_suffix = {".md": "markdown"}
 root_doc = "index"
+exclude_patterns = ["doc/site"]
 # As GitHub names them.
 myst_heading_anchors = 4
 # Pages begin where their folder's listing on a forge would show them.

@@ -1,13 +1,13 @@
 """Shows the points of a run in ParaView as the boxes that they were, carried along by
 their deformation gradients and coloured by a field; a body about an axis is mirrored.
-Debian's paraview and python3-paraview.
 
     paraview --script=contrib/paraview_upsetting.py     # output/upsetting
     pvpython contrib/paraview_upsetting.py output/upsetting --picture strain.png
 
 or, in ParaView, Macros > Import new macro: it then shows the run whose particles.pvd is
-selected. Without a screen: xvfb-run -a pvpython ... Points that have split are drawn as
-squares and cubes, too, which they need not be.
+selected. Without a screen: xvfb-run pvpython ... Needs Debian's paraview and
+python3-paraview. Points that have split are drawn as squares and cubes, too, which they
+need not be.
 """
 
 import argparse
@@ -15,12 +15,115 @@ import re
 import sys
 from pathlib import Path
 
-from paraview import simple
+try:
+    from paraview import simple
+except ModuleNotFoundError:
+    simple = None
 
-# Columns of the deformation gradient times the side that the box had: what a tensor
-# glyph takes for its axes. About an axis a point is a ring of length 2 pi r.
-SIDE_OF = {
-    "axisymmetric": "(volume / det(F) * F[:, 2, 2] / (2 * numpy.pi * x)) ** (1 / 2)",
-    "plane": "(volume / det(F)) ** (1 / 2)",
-    "3D": "(volume / det(F)) ** (1 / 3)",
+# The initial side of the box of a point. About an axis the point is a ring, whose length
+# was 2 pi times the radius.
+F = "deformation_gradient"
+SIDE = {
+    "axisymmetric": f"(volume / det({F}) * {F}[:, 2, 2] / (2 * 3.14159265 * Points[:, 0])) ** (1 / 2)",
+    "plane": f"(volume / det({F})) ** (1 / 2)",
+    "3D": f"(volume / det({F})) ** (1 / 3)",
 }
+
+
+def geometry(directory):
+    """Of the run: 'axisymmetric', 'plane' or '3D'."""
+    text = (directory / "parameters.prm").read_text()
+    kind = re.search(r"subsection Geometry.*?set Kind *= *(\w+)", text, re.DOTALL)[1]
+    return kind if kind in SIDE else "plane"
+
+
+def mirrored(source, kind):
+    """In the axis, which is x = 0."""
+    if kind != "axisymmetric":
+        return source
+    return simple.Reflect(Input=source, Plane="X", Center=0, CopyInput=1)
+
+
+def show(directory, field):
+    """Makes the pipeline: boxes, cells of the grid, time, colour bar; the view."""
+    kind = geometry(directory)
+    view = simple.GetActiveViewOrCreate("RenderView")
+    view.UseColorPaletteForBackground = 0
+    view.Background = [1, 1, 1]
+    view.OrientationAxesVisibility = int(kind == "3D")
+
+    points = simple.PVDReader(registrationName="points", FileName=str(directory / "particles.pvd"))
+    points.UpdatePipeline()
+    if field not in points.PointData.keys():
+        raise SystemExit(f"the points have no field '{field}', but {', '.join(points.PointData.keys())}")
+    axes = simple.PythonCalculator(
+        registrationName="axes of the boxes", Input=points, ArrayName="axes",
+        Expression=f"{F} * ({SIDE[kind]})[:, None, None]",
+    )
+    boxes = simple.TensorGlyph(registrationName="boxes", Input=axes, GlyphType="Box")
+    boxes.Tensors = ["POINTS", "axes"]
+    boxes.ExtractEigenvalues = 0
+    boxes.ColorGlyphs = 1
+    boxes.Scalars = ["POINTS", field]
+    shown = simple.Show(mirrored(boxes, kind), view)
+    simple.ColorBy(shown, ("POINTS", field))
+    colours = simple.GetColorTransferFunction(field)
+    colours.ApplyPreset("Viridis (matplotlib)", True)
+    shown.RescaleTransferFunctionToDataRange(False, True)
+    if kind != "3D":
+        shown.Ambient, shown.Diffuse = 1, 0  # colours as they are in the bar
+    bar = simple.GetScalarBar(colours, view)
+    bar.Title, bar.ComponentTitle = field.replace("_", " "), ""
+    bar.TitleColor = bar.LabelColor = [0, 0, 0]
+    shown.SetScalarBarVisibility(view, True)
+
+    grid = simple.PVDReader(registrationName="grid", FileName=str(directory / "grid.pvd"))
+    cells = simple.Show(mirrored(grid, kind), view)
+    cells.SetRepresentationType("Wireframe")
+    simple.ColorBy(cells, value=None)
+    cells.AmbientColor = cells.DiffuseColor = [0.6, 0.6, 0.6]
+    cells.Opacity = 0.4
+
+    label = simple.AnnotateTimeFilter(registrationName="time", Input=points, Format="t = {time:.5g}")
+    simple.Show(label, view).Color = [0, 0, 0]
+    simple.GetAnimationScene().UpdateAnimationUsingDataTimeSteps()
+    simple.GetAnimationScene().GoToLast()
+    if kind == "3D":
+        view.CameraPosition, view.CameraViewUp = [-0.45, -0.7, 0.55], [0, 0, 1]
+        view.CameraFocalPoint = [0, 0, 0]
+    else:
+        view.InteractionMode = "2D"
+        view.CameraParallelProjection = 1
+    simple.ResetCamera(view)
+    simple.Render(view)
+    return view
+
+
+def selected():
+    """The run of the source that is selected in ParaView, else the one of the README."""
+    source = simple.GetActiveSource()
+    name = getattr(source, "FileName", None) or "output/upsetting/particles.pvd"
+    return Path(name if isinstance(name, str) else name[0]).parent
+
+
+def main():
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("run", nargs="?", type=Path, help="output directory")
+    parser.add_argument("--field", default="equivalent_plastic_strain", help="of the points")
+    parser.add_argument("--picture", metavar="FILE.png", help="is written, at the last time")
+    # ParaView has arguments of its own.
+    is_called = Path(sys.argv[0]).name == "paraview_upsetting.py"
+    arguments = parser.parse_args(None if is_called else [])
+    if simple is None:
+        sys.exit("no ParaView here: run it with pvpython, of Debian's python3-paraview")
+    directory = arguments.run or selected()
+    if not (directory / "particles.pvd").is_file():
+        sys.exit(f"No such file or directory: '{directory}/particles.pvd'")
+    view = show(directory, arguments.field)
+    if arguments.picture:
+        simple.SaveScreenshot(arguments.picture, view, ImageResolution=[1200, 700])
+
+
+main()

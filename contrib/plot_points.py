@@ -1,11 +1,11 @@
 #!/usr/bin/python3
-"""Draws the points of the last picture of each run, coloured by a field: as the boxes
-that they were, carried along by their deformation gradients.
+"""Draws the points of the last picture of each run, coloured by a field; of vectors and
+tensors it is the size.
 
     contrib/plot_points.py output/upsetting equivalent_plastic_strain strain.png
 
-Of vectors and tensors it is the size. Points that have split are drawn as squares and
-cubes, too, which they need not be.
+With the fields initial_domain and deformation_gradient in the pictures they are drawn as
+their boxes, carried along by the deformation, else as discs of their size.
 """
 
 import itertools
@@ -15,7 +15,7 @@ import results
 import matplotlib.pyplot as plt
 import numpy
 from matplotlib.cm import ScalarMappable
-from matplotlib.collections import PolyCollection
+from matplotlib.collections import EllipseCollection, PolyCollection
 from matplotlib.colors import Normalize
 
 CORNERS = {
@@ -24,20 +24,28 @@ CORNERS = {
 }
 # Of a cube, counter-clockwise from outside.
 FACES = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
-MOST_BOXES = 200_000
+MOST_BOXES = 300_000
 MAP = "viridis"
 
 
-def boxes(points, dim, is_axisymmetric):
-    """Corners (points x 2^dim x dim) of the boxes, nothing if fields are missing."""
-    if "deformation_gradient" not in points or "volume" not in points:
+def boxes(points, dim):
+    """Corners (points x 2^dim x dim) of the boxes, nothing if they are not known."""
+    if "initial_domain" not in points or "deformation_gradient" not in points:
         return None
-    F = points["deformation_gradient"].astype(float)
-    volume = points["volume"] / numpy.linalg.det(F)
+    F = points["deformation_gradient"][:, :dim, :dim]
+    edges = CORNERS[dim] * points["initial_domain"][:, None, :dim]
+    return points.places[:, None, :dim] + edges @ F.transpose(0, 2, 1)
+
+
+def diameters(points, dim, is_axisymmetric):
+    """Of discs and balls that are as large as the points."""
+    if "volume" not in points:
+        spans = numpy.ptp(points.places[:, :dim], axis=0)
+        return numpy.full(len(points.places), (spans.prod() / len(points.places)) ** (1 / dim))
+    volume = points["volume"]
     if is_axisymmetric:
-        volume = volume * F[:, 2, 2] / (2 * numpy.pi * points.places[:, 0])
-    F = F[:, :dim, :dim] * (volume ** (1 / dim))[:, None, None]
-    return points.places[:, None, :dim] + CORNERS[dim] @ F.transpose(0, 2, 1)
+        volume = volume / (2 * numpy.pi * points.places[:, 0])
+    return 2 * (volume / numpy.pi) ** 0.5 if dim == 2 else (6 * volume / numpy.pi) ** (1 / 3)
 
 
 def project(places):
@@ -69,38 +77,44 @@ def draw(axes, points, values, norm, dim=2, is_axisymmetric=False, grid=None):
     colours = plt.get_cmap(MAP)(norm(values))
     if "body" in points:
         colours[points["body"] < 0] = (0.5, 0.5, 0.5, 1)  # rigid
-    corners = boxes(points, dim, is_axisymmetric) if len(values) <= MOST_BOXES else None
+    corners = boxes(points, dim) if len(values) <= MOST_BOXES else None
     if grid is not None and dim == 2:
         cells = PolyCollection(
             grid.cells()[:, :, :2], facecolor="none", edgecolor="gray", linewidth=0.3,
             alpha=0.6, rasterized=True,
         )
-        axes.add_collection(cells)
+        axes.add_collection(cells, autolim=False)
     if corners is None:
-        places, depth = (points.places[:, :2], None) if dim == 2 else project(points.places)
-        order = slice(None) if depth is None else numpy.argsort(depth)
-        size = max(1, 5400 / len(values))
-        axes.scatter(*places[order].T, c=colours[order], s=size, lw=0, rasterized=True)
+        places, order = points.places[:, :2], slice(None)
+        if dim == 3:
+            places, depth = project(points.places)
+            order = numpy.argsort(depth)
+        size = diameters(points, dim, is_axisymmetric)[order]
+        drawn = EllipseCollection(
+            size, size, 0, units="xy", offsets=places[order], transOffset=axes.transData,
+            facecolor=colours[order], rasterized=True,
+        )
+        margin = size.max() / 2
+        axes.update_datalim([places.min(axis=0) - margin, places.max(axis=0) + margin])
     else:
-        polygons, brightness, box = corners, None, slice(None)
+        polygons = corners
         if dim == 3:
             polygons, brightness, box = visible_faces(corners)
-        colours = colours[box]
-        if brightness is not None:
+            colours = colours[box]
             colours[:, :3] *= brightness[:, None]
         # edges of their own colour close the seams
         drawn = PolyCollection(
             polygons, facecolor=colours, edgecolor=colours, linewidth=0.2, rasterized=True
         )
-        axes.add_collection(drawn)
+    axes.add_collection(drawn)
     axes.autoscale_view()
     axes.set_aspect("equal")
     if dim == 3:
         axes.set_axis_off()
 
 
-def colour_bar(figure, axes, norm, label):
-    figure.colorbar(ScalarMappable(norm, MAP), ax=axes, label=label)
+def colour_bar(figure, axes, norm, label, **options):
+    figure.colorbar(ScalarMappable(norm, MAP), ax=axes, label=label, **options)
 
 
 def limits(all_values):
@@ -118,9 +132,10 @@ def main():
     arguments = parser.parse_args()
     runs = []
     for directory in arguments.runs:
+        run = results.Run(directory)
         time, path = results.pictures(directory)[-1]
         points = results.Data(path)
-        runs.append((results.Run(directory), time, points, points.size_of(arguments.field)))
+        runs.append((run, time, points, points.size_of(arguments.field)))
     norm = limits(values for _, _, _, values in runs)
     figure, panels = plt.subplots(
         len(runs), figsize=(9, 3.4 * len(runs)), squeeze=False, constrained_layout=True

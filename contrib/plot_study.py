@@ -105,7 +105,7 @@ def draw_slopes(axes, all_points):
         )
 
 
-def diagram(about, lines, error):
+def diagram(about, lines, error, title=None):
     """The pair of diagrams of a reference."""
     along = about["order_along"]
     has_sizes = bool(along)
@@ -152,7 +152,8 @@ def diagram(about, lines, error):
         tidy(axes)
     if has_sizes:
         mark_sizes(over_size, {x for x, _ in size_points})
-    figure.suptitle(about["title"] or about["study"])
+    if title:
+        figure.suptitle(title)
     handles, labels = [], []
     for axes in panels:
         for handle, label in zip(*axes.get_legend_handles_labels()):
@@ -193,7 +194,8 @@ def main():
     lines = lines_of(study.about, study.rows)
     out = arguments.out or arguments.study / "error"
     for name in wanted:
-        save(diagram(study.about, lines, name), f"{out}_{name.replace(' ', '_')}")
+        figure = diagram(study.about, lines, name, study.title)
+        save(figure, f"{out}_{name.replace(' ', '_')}")
 
 
 if __name__ == "__main__":

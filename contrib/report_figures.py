@@ -8,6 +8,7 @@ import matplotlib
 import matplotlib.pyplot as plt
 import numpy
 import plot_points
+import plot_study
 
 INK = "#123456"  # stands for the colour of the page's text
 THEME = """<style>svg{color:#26323d}
@@ -67,9 +68,8 @@ def colour(index, count):
 class Panel:
     """A diagram of lines (x, y, label, options)."""
 
-    def __init__(self, title, x_label, y_label, lines, log=False):
-        self.title, self.x_label, self.y_label = title, x_label, y_label
-        self.lines, self.log = lines, log
+    def __init__(self, title, x_label, lines, log=False):
+        self.title, self.x_label, self.lines, self.log = title, x_label, lines, log
 
 
 def curves(panels):
@@ -77,35 +77,44 @@ def curves(panels):
     columns = min(2, len(panels))
     rows = -(-len(panels) // columns)
     figure, axes = plt.subplots(
-        rows, columns, figsize=(10 if columns == 2 else 7, 3 * rows), squeeze=False
+        rows, columns, figsize=(10, 2.9 * rows), squeeze=False
     )
     for axis in axes.flat[len(panels) :]:
         axis.set_visible(False)
     for axis, panel in zip(axes.flat, panels):
+        positive = [y[y > 0] for _, y, _, _ in panel.lines]
+        all_positive = numpy.concatenate(positive)
+        # over less than a decade a logarithm is no help
+        log = panel.log and len(all_positive) > 0 and numpy.ptp(numpy.log10(all_positive)) > 1
         for x, y, label, options in panel.lines:
-            # what is not positive has no logarithm
-            y = numpy.where(y > 0, y, numpy.nan) if panel.log else y
+            if log:
+                y = numpy.where(y > 0, y, numpy.nan)
             marker = {"marker": "o", "markersize": 2.5} if len(x) < 12 else {}
             axis.plot(x, y, label=label, **{**marker, **options})
-        if panel.log and any(numpy.nanmax(y, initial=0) > 0 for _, y, _, _ in panel.lines):
+        if log:
             axis.set_yscale("log")
-        axis.set(title=panel.title, xlabel=panel.x_label, ylabel=panel.y_label)
-        if sum(bool(label) for _, _, label, _ in panel.lines) in range(1, MOST_LABELS + 1):
+        else:
+            axis.ticklabel_format(axis="y", scilimits=(-3, 5), useMathText=True)
+        axis.set(title=panel.title, xlabel=panel.x_label)
+        if 1 <= sum(bool(label) for _, _, label, _ in panel.lines) <= MOST_LABELS:
             axis.legend()
     return data_uri(figure)
 
 
 def bars(names, seconds_by_phase):
-    """Run times of runs, by phase: a bar for each run."""
-    figure, axis = plt.subplots(figsize=(10, 1.3 + 0.35 * len(names)))
+    """Run times of runs, by phase: a bar for each run. Small phases are put together."""
+    phases = sorted(seconds_by_phase, key=lambda phase: -seconds_by_phase[phase].sum())
+    shown = {phase: seconds_by_phase[phase] for phase in phases[: len(COLOURS) - 1]}
+    rest = sum(seconds_by_phase[phase] for phase in phases[len(COLOURS) - 1 :])
+    figure, axis = plt.subplots(figsize=(10, 1.4 + 0.35 * len(names)))
     left = numpy.zeros(len(names))
-    for i, (phase, seconds) in enumerate(seconds_by_phase.items()):
-        axis.barh(names, seconds, left=left, label=phase, height=0.6, color=colour(i, len(seconds_by_phase)))
+    for (phase, seconds), shade in zip([*shown.items(), ("the rest", rest)], COLOURS):
+        axis.barh(names, seconds, left=left, label=phase, height=0.6, color=shade)
         left += seconds
     axis.invert_yaxis()
     axis.grid(axis="y", visible=False)
     axis.set_xlabel("run time (s)")
-    axis.legend(ncols=4, loc="lower center", bbox_to_anchor=(0.5, 1))
+    axis.legend(ncols=4, loc="lower left", bbox_to_anchor=(0, 1), borderaxespad=0)
     return data_uri(figure)
 
 
@@ -121,13 +130,16 @@ def errors_over_time(records):
             label=f"{name}: {reference}",
         )
     axis.set(xscale="log", yscale="log", xlabel="run time (s)", ylabel="relative error")
+    plot_study.tidy(axis)
     axis.legend(loc="center left", bbox_to_anchor=(1, 0.5))
     return data_uri(figure)
 
 
-def choose(times):
-    """First, middle and last of the pictures."""
-    return sorted({0, (len(times) - 1) // 2 + (len(times) % 2 == 0), len(times) - 1})
+def choose(records):
+    """The first, the middle and the last picture, by their times."""
+    half = (records[0][0] + records[-1][0]) / 2
+    middle = min(records, key=lambda record: abs(record[0] - half))
+    return sorted({time: path for time, path in (records[0], middle, records[-1])}.items())
 
 
 def points(runs, field, only_last=False):
@@ -136,27 +148,36 @@ def points(runs, field, only_last=False):
     for run in runs:
         records = results.pictures(run.directory)
         grids = dict(results.pictures(run.directory, "grid")) if run.has("grid.pvd") else {}
-        for i in [len(records) - 1] if only_last else choose(records):
-            time, path = records[i]
+        for time, path in records[-1:] if only_last else choose(records):
             shown.append((run, time, results.Data(path), grids.get(time)))
-    values = [data.size_of(field) for _, _, data, _ in shown]
+    values = [data.size_of(field) if field else numpy.zeros(len(data.places))
+              for _, _, data, _ in shown]
     norm = plot_points.limits(values)
-    columns = 1 if len(shown) == 1 else min(3, len(shown)) if not only_last else min(2, len(shown))
-    rows = -(-len(shown) // columns)
-    width = 10 / columns
+    is_plane = runs[0].dim == 2
     spans = [numpy.ptp(data.places[:, :2], axis=0) for _, _, data, _ in shown]
-    tall = max(span[1] / span[0] for span in spans if span[0] > 0) if runs[0].dim == 2 else 0.9
-    height = min(max(width * tall, 0.22 * width), 1.6 * width) + 0.7
+    wide, tall = numpy.max(spans, axis=0) if is_plane else (1, 0.9)
+    # slender bodies stand in one row, flat ones below each other
+    columns = 1 if wide > 4 * tall else 3 if not only_last or tall > wide else 2
+    columns = min(columns, len(shown))
+    rows = -(-len(shown) // columns)
+    height = min(max(9.4 / columns * tall / max(wide, 1e-300), 0.6), 7) + 0.6
     figure, axes = plt.subplots(
-        rows, columns, figsize=(10, rows * height), squeeze=False, sharex=True, sharey=True
+        rows, columns, figsize=(10, rows * height + 0.7), squeeze=False, sharex=is_plane,
+        sharey=is_plane,
     )
     for axis in axes.flat[len(shown) :]:
         axis.set_visible(False)
     for axis, (run, time, data, grid), of_points in zip(axes.flat, shown, values):
-        grid = grid and run.dim == 2 and results.Data(grid)
-        plot_points.draw(axis, data, of_points, norm, run.dim, run.is_axisymmetric, grid or None)
+        cells = results.Data(grid) if grid and run.dim == 2 else None
+        plot_points.draw(axis, data, of_points, norm, run.dim, run.is_axisymmetric, cells)
         axis.grid(False)
+        if is_plane:
+            axis.locator_params(nbins=4 if columns > 1 else 8)
+            axis.ticklabel_format(scilimits=(-4, 5), useMathText=True)
         name = f"{run.name}, " if len(runs) > 1 else ""
         axis.set_title(f"{name}t = {time:.4g} {run.unit('time')}", fontsize=9)
-    plot_points.colour_bar(figure, axes, norm, runs[0].label(field))
-    return data_uri(figure)
+    if norm.vmin < norm.vmax:
+        plot_points.colour_bar(
+            figure, axes, norm, runs[0].label(field), location="bottom", aspect=60, fraction=0.05
+        )
+    return data_uri(figure, bbox_inches="tight")

@@ -259,10 +259,16 @@ class Run:
         base = [self.units[name] for name in ("length", "mass", "time")]
         if base == ["m", "kg", "s"] and quantity in SI_NAMES:
             return SI_NAMES[quantity]
-        powers = list(zip(base, QUANTITIES[quantity]))
-        powers.sort(key=lambda pair: pair[1] < 0)
-        over = {-2: "⁻²", -1: "⁻¹", 1: "", 2: "²", 3: "³"}
-        return " ".join(unit + over[power] for unit, power in powers if power != 0)
+        length, mass, time = QUANTITIES[quantity]
+        sides = {1: [], -1: []}
+        for unit, power in ((base[1], mass), (base[0], length), (base[2], time)):
+            if power != 0:
+                exponent = f"^{abs(power)}" if abs(power) > 1 else ""
+                sides[1 if power > 0 else -1].append(unit + exponent)
+        above, below = " ".join(sides[1]) or "1", " ".join(sides[-1])
+        if len(sides[-1]) > 1:
+            below = f"({below})"
+        return f"{above}/{below}" if below else above
 
     def quantity(self, name):
         """Of a field of points, nothing if it has no unit."""
@@ -308,6 +314,7 @@ class Study:
     def __init__(self, directory):
         self.directory = Path(directory)
         self.about = read_json(self.directory / "study.json")
+        self.title = self.about["title"] or self.about["study"]
         self.rows, self.names = read_rows(self.directory / "study.csv")
         self.lists = [entry["name"] for entry in self.about["lists"]]
         self.errors = [name[6:] for name in self.names if name.startswith("error_")]

@@ -96,6 +96,7 @@ def draw(axes, points, values, norm, dim=2, is_axisymmetric=False, grid=None):
         )
         margin = size.max() / 2
         axes.update_datalim([places.min(axis=0) - margin, places.max(axis=0) + margin])
+        axes.add_collection(drawn, autolim=False)
     else:
         polygons = corners
         if dim == 3:
@@ -106,7 +107,7 @@ def draw(axes, points, values, norm, dim=2, is_axisymmetric=False, grid=None):
         drawn = PolyCollection(
             polygons, facecolor=colours, edgecolor=colours, linewidth=0.2, rasterized=True
         )
-    axes.add_collection(drawn)
+        axes.add_collection(drawn)
     axes.autoscale_view()
     axes.set_aspect("equal")
     if dim == 3:
@@ -114,7 +115,7 @@ def draw(axes, points, values, norm, dim=2, is_axisymmetric=False, grid=None):
 
 
 def colour_bar(figure, axes, norm, label, **options):
-    figure.colorbar(ScalarMappable(norm, MAP), ax=axes, label=label, **options)
+    figure.colorbar(ScalarMappable(norm, MAP), ax=axes, label=label, panchor=False, **options)
 
 
 def limits(all_values):

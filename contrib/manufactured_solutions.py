@@ -6,7 +6,7 @@ in current coordinates, and a third direction of the other), and checks them: th
 derivation with sympy, the expressions against finite differences of the motion
 alone (with many digits), and that the files have them.
 
-usage: contrib/manufactured_solutions.py
+    contrib/manufactured_solutions.py
 
 The law is the neo-Hookean one, P = G (F - F^-T) + lambda ln J F^-T, and the
 force per mass is b = d2x/dt2 - Div P / rho, all per initial volume.
@@ -38,6 +38,7 @@ import sys
 import textwrap
 from pathlib import Path
 
+import results
 import mpmath
 import sympy
 
@@ -255,4 +256,5 @@ def main():
 
 
 if __name__ == "__main__":
+    results.Parser(__doc__).parse_args()
     sys.exit(main())

@@ -1,7 +1,7 @@
 cmake_minimum_required(VERSION 3.25)
 
 # Runs PROGRAM with ARGUMENTS ("|" between them) and checks the exit CODE, what
-# it says, and what it leaves behind.
+# it says (EXPRESSION, and not UNWANTED), and what it leaves behind.
 
 file(REMOVE_RECURSE ${OUTPUT})
 string(REPLACE ";" "\\;" ARGUMENTS "${ARGUMENTS}")
@@ -17,6 +17,9 @@ if(NOT code EQUAL CODE)
 endif()
 if(NOT "${out}${err}" MATCHES "${EXPRESSION}")
   message(FATAL_ERROR "no match of ${EXPRESSION} in\n${out}${err}")
+endif()
+if(UNWANTED AND "${out}${err}" MATCHES "${UNWANTED}")
+  message(FATAL_ERROR "found ${UNWANTED} in\n${out}${err}")
 endif()
 if(CODE GREATER 0)
   string(REGEX MATCHALL "\n" lines "${err}")

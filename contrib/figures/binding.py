@@ -53,6 +53,7 @@ FUNCTIONS = {
     "seconds": kind_of("seconds"),
     "percent": lambda *values: [100 * value for value in flat(values)],
     "curve": curve,
+    "table": lambda path: read_csv(ROOT / path),
     "flat": flat,
     "mean": lambda values: float(numpy.mean(values)),
     "ln": math.log,
@@ -108,7 +109,8 @@ class Binding:
         self.problems, self.items, self.covered = [], [], {}
         self.data = {}
         if path.exists():
-            self.data = tomllib.loads(path.read_text(encoding="utf-8"))
+            with self._telling(f"{path.relative_to(ROOT)}: "):
+                self.data = tomllib.loads(path.read_text(encoding="utf-8"))
         self.sources = {}
         for source, entry in self.data.get("sources", {}).items():
             with self._telling():
@@ -190,10 +192,14 @@ class Binding:
                 if "given" in (r, c):
                     self._cover(numbers, "given")
                     continue
-                r_filled = fill(r, shown[k]).replace("{row}", str(k))
-                c_filled = fill(c, heads).replace("{column}", str(j))
+                code = re.search(r"`([^`]*)`", text)
+                label = repr(code[1] if code else text)
+                r_filled, c_filled = (
+                    fill(e, texts).replace("{row}", str(k)).replace("{column}", str(j))
+                    .replace("{label}", label) for e, texts in ((r, shown[k]), (c, heads)))
                 if "cell" in entry:
-                    self._add(numbers, entry["cell"], {"r": r_filled, "c": c_filled})
+                    self._add(numbers, entry["cell"].replace("{label}", label),
+                              {"r": r_filled, "c": c_filled})
                 elif by_column:
                     self._add(numbers, c_filled, {"r": r_filled})
                 else:
@@ -297,7 +303,7 @@ class Telling:
         return self
 
     def __exit__(self, kind, error, _):
-        if kind in (ValueError, KeyError, SyntaxError):
+        if kind and issubclass(kind, (ValueError, KeyError, SyntaxError)):
             self.binding.problems.append(f"{self.where}{error}")
             return True
         return False

@@ -155,6 +155,13 @@ class Study:
     def _directory(self, row):
         return self.directory / "_".join(as_file_name(row[name]) for name in self.lists)
 
+    def run(self, name):
+        """By the name of its directory."""
+        for run in self.runs:
+            if run.directory.name == name:
+                return run
+        raise Failed(f"no run of {self.directory.parent.name} is in {name}")
+
     def all(self, *labels):
         """The runs with these labels, in the order of the study."""
         return [run for run, row in zip(self.runs, self.rows)

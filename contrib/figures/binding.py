@@ -6,7 +6,7 @@ import math
 import re
 import tomllib
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache
 
 import numpy
 
@@ -81,7 +81,6 @@ def compare(number, figure, factor):
         return "equal" if value <= printed + half else "differs"
     if kind == "above":
         return "equal" if value >= printed - half else "differs"
-    # What is printed without a sign may be a loss as well as a gain.
     if abs(value - printed) <= half:
         return "equal"
     near = abs(value - printed) <= 3 * half and abs(value - printed) <= 0.02 * abs(printed)
@@ -139,7 +138,7 @@ class Binding:
     def _add(self, numbers, expression, names=None):
         self._names(expression, names or {})
         self.items.append(Item(numbers, expression, names or {}))
-        self._cover(numbers, "bound")
+        self.covered.update((number.start, "bound") for number in numbers)
 
     def _bind_text(self, excerpt):
         numbers, start, end = self.page.find(excerpt)
@@ -151,11 +150,9 @@ class Binding:
 
     def _bind_tests(self):
         for start, end, name in self.page.rows_of_tests():
-            if "." in name and not name.startswith("unit."):
-                if name not in TESTS:
-                    if not TESTS.has(name):
-                        self.problems.append(f"there is no test {name}")
-                self._cover(self.page.numbers_within(start, end), "by a test")
+            if not is_test(name):
+                self.problems.append(f"there is no test {name}")
+            self._cover(self.page.numbers_within(start, end), "by a test")
 
     def _bind_table(self, entry):
         unknown = set(entry) - {"under", "place", "rows", "columns", "cell", "output", "nth",
@@ -340,20 +337,14 @@ def printed_cell(output, nth, row, column, head):
     return [float(n.replace(",", "")) for n in re.findall(r"[-+]?\d[\d,]*\.?\d*(?:[eE][-+]?\d+)?", text)]
 
 
-class Tests(set):
-    """Names of unit tests, read when the first is asked for."""
-
-    @cached_property
-    def names(self):
-        names = []
-        for path in (ROOT / "tests/unit").rglob("*_test.cc"):
-            text = path.read_text(encoding="utf-8")
-            names += re.findall(r"^\s*(?:TYPED_)?TEST(?:_[PF])?\(\s*(\w+),\s*(\w+)", text, re.M)
-        return [".".join(name) for name in names]
-
-    def has(self, name):
-        pattern = re.compile(re.escape(name).replace(r"\*", ".*"))
-        return any(pattern.fullmatch(other) for other in self.names)
+@cache
+def tests():
+    """Names of all unit tests."""
+    texts = (path.read_text(encoding="utf-8") for path in (ROOT / "tests/unit").rglob("*_test.cc"))
+    pattern = re.compile(r"^\s*(?:TYPED_)?TEST(?:_[PF])?\(\s*(\w+),\s*(\w+)", re.M)
+    return [".".join(name) for text in texts for name in pattern.findall(text)]
 
 
-TESTS = Tests()
+def is_test(name):
+    pattern = re.compile(re.escape(name).replace(r"\*", ".*"))
+    return any(pattern.fullmatch(test) for test in tests())

@@ -8,7 +8,7 @@ DIGITS = r"(?:\d{1,3}(?:,\d{3})+|\d+)(?:\.\d+)?(?:[eE][-+]?\d+)?"
 # Not part of a name (Q1, T_0, 3D), of a section (3.1.2) or of a power.
 NUMBER = re.compile(rf"(?<![\w.^/])(?<!\w-)[-+]?{DIGITS}(?![\w^]|\.\d)|(?<=\d-){DIGITS}(?![\w^]|\.\d)")
 HOLE = re.compile(r"\{([^{}]*)\}")
-TEST = re.compile(r"`((?:unit\.)?[A-Z]\w+\.[\w*]+)`")
+TEST = re.compile(r"`([A-Z]\w+\.[\w*]+)`")
 
 # What holds no figures: code, formulas, headings, pictures, targets of links, where
 # something was published, years.

@@ -11,7 +11,7 @@ import shutil
 import subprocess
 import sys
 import time
-from functools import cached_property
+from functools import cache, cached_property
 from pathlib import Path
 
 import numpy
@@ -199,11 +199,21 @@ class Output:
         return numbers[0] if len(numbers) == 1 else numbers
 
 
+@cache
+def program_key():
+    """Changes with the program, so that results do not outlive it."""
+    return hashlib.sha1(PROGRAM.read_bytes()).hexdigest()
+
+
 class Source:
-    """Runs at most once."""
+    """Runs at most once. What takes longer than `limit` (s) does not run; with `keep` the
+    results of another program are taken, too."""
+
+    limit, keep = None, False
 
     def __init__(self, name, entry, others):
         self.name, self.entry, self.others = name, entry, others
+        self._known = self._failure = None
         kinds = [kind for kind in KINDS if kind in entry]
         unknown = set(entry) - ENTRIES
         if len(kinds) != 1 or unknown:
@@ -248,9 +258,18 @@ class Source:
         key = hashlib.sha1(self.shown.encode()).hexdigest()[:6]
         return ROOT / "output/figures" / f"{Path(self.file).stem}-{key}"
 
-    @cached_property
+    @property
     def result(self):
-        return self._result()
+        """Of a run that is made now, or was made before. One that failed is not tried again."""
+        if self._failure:
+            raise self._failure
+        if self._known is None:
+            try:
+                self._known = self._result()
+            except (Failed, NotRun) as failure:
+                self._failure = failure
+                raise
+        return self._known
 
     def _words(self):
         results = str(self.directory / "results")
@@ -269,18 +288,16 @@ class Source:
     def _result(self):
         for source in self.needs:
             source.result  # runs it
-        settings = Source.settings
         done = self.directory / "run.json"
         stamp = self.directory / "program"
-        program = settings.program_key
         known = stamp.read_text() if stamp.exists() else ""
-        if not (done.exists() and (settings.keep or known == program)):
-            if settings.limit is not None and not self.cost <= settings.limit:
+        if not (done.exists() and (self.keep or known == program_key())):
+            if self.limit is not None and not self.cost <= self.limit:
                 raise NotRun(f"{self.shown}: {self.cost:g} s")
-            if known != program:
+            if known != program_key():
                 shutil.rmtree(self.directory, ignore_errors=True)
             self.directory.mkdir(parents=True, exist_ok=True)
-            stamp.write_text(program)
+            stamp.write_text(program_key())
             print(f"  runs {self.shown}", file=sys.stderr, flush=True)
             start = time.monotonic()
             with open(self.directory / "log.txt", "w", encoding="utf-8") as log:

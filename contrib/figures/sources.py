@@ -190,6 +190,10 @@ class Output:
         self.directory = directory
         self.text = (directory / "log.txt").read_text(encoding="utf-8")
 
+    def run(self, path):
+        """One that the command made, by its directory."""
+        return Run(ROOT / path)
+
     def find(self, pattern):
         """The numbers in the groups of a regular expression."""
         match = re.search(pattern, self.text, re.M | re.S)

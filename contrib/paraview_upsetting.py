@@ -5,7 +5,7 @@ their deformation gradients and coloured by a field; a body about an axis is mir
     pvpython contrib/paraview_upsetting.py output/upsetting --picture strain.png
 
 or, in ParaView, Macros > Import new macro: it then shows the run whose particles.pvd is
-selected. Without a screen: xvfb-run pvpython ... Needs Debian's paraview and
+selected. Without a screen: xvfb-run -s -noreset pvpython ... Needs Debian's paraview and
 python3-paraview. Where pictures lack the field initial_domain, boxes are taken for squares
 and cubes at the start, which those of points that have split were not.
 """

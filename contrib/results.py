@@ -82,7 +82,7 @@ def picture_file(name):
 
 
 class Table(dict):
-    """Columns of a file by their names."""
+    """Columns of a file, or what is in a row, by the names of the columns."""
 
     def __init__(self, path, columns):
         super().__init__(columns)
@@ -97,7 +97,7 @@ def read_rows(path):
     try:
         with open(path, encoding="utf-8", newline="") as file:
             reader = csv.DictReader(file, restval="")
-            rows = list(reader)
+            rows = [Table(path, row) for row in reader]
             return rows, list(reader.fieldnames or ())
     except (UnicodeDecodeError, csv.Error):
         raise Refusal(f"'{path}' is no CSV file") from None

@@ -103,11 +103,14 @@ def read_rows(path):
         raise Refusal(f"'{path}' is no CSV file") from None
 
 
-def read_numbers(path):
-    """The columns of a CSV file as arrays; what is empty is not a number."""
+def read_numbers(path, grows=False):
+    """The columns of a CSV file as arrays; what is empty is not a number. Of a file that
+    grows, the last row may not have been written to its end."""
     import numpy
 
     rows, names = read_rows(path)
+    if grows and not Path(path).read_bytes().endswith(b"\n"):
+        del rows[-1:]
     columns = {}
     for name in names:
         try:
@@ -118,7 +121,7 @@ def read_numbers(path):
 
 
 def history(directory):
-    return read_numbers(Path(directory) / "history.csv")
+    return read_numbers(Path(directory) / "history.csv", grows=True)
 
 
 def read_json(path):

@@ -89,7 +89,7 @@ class Table(dict):
         self.path = path
 
     def __missing__(self, name):
-        raise Refusal(f"'{self.path}' has no column '{name}', but {', '.join(self)}")
+        raise Refusal(f"'{self.path}' has no column '{name}', but {', '.join(self) or 'none'}")
 
 
 def read_rows(path):
@@ -177,7 +177,7 @@ class Data:
 
     def __getitem__(self, name):
         if name not in self.names:
-            raise Refusal(f"'{self.path}' has no field '{name}', but {', '.join(self.names)}")
+            raise Refusal(f"'{self.path}' has no field '{name}', but {', '.join(self.names) or 'none'}")
         values = self.to_numpy(self.output.GetPointData().GetArray(name))
         return values.reshape(-1, 3, 3) if values.shape[1:] == (9,) else values
 

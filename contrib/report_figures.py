@@ -157,7 +157,7 @@ def points(runs, field, only_last=False):
     spans = numpy.array([numpy.ptp(data.places[:, :2], axis=0) for _, _, data, _ in shown])
     wide, tall = spans.max(axis=0) if is_plane else (1, 0.9)
     # on one scale, unless one of them would be a dot
-    shared = is_plane and spans.max() < 5 * spans.max(axis=1).min()
+    shared = is_plane and bool(spans.max() < 5 * spans.max(axis=1).min())
     # slender bodies stand in one row, flat ones below each other
     columns = 1 if wide > 4 * tall else 3 if not only_last or tall > wide else 2
     columns = min(columns, len(shown))

@@ -39,6 +39,9 @@ import textwrap
 from pathlib import Path
 
 import results
+
+results.Parser(__doc__).parse_args()  # before modules that few have
+
 import mpmath
 import sympy
 
@@ -256,5 +259,4 @@ def main():
 
 
 if __name__ == "__main__":
-    results.Parser(__doc__).parse_args()
     sys.exit(main())

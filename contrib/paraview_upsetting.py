@@ -5,7 +5,7 @@ their deformation gradients and coloured by a field; a body about an axis is mir
     pvpython contrib/paraview_upsetting.py output/upsetting --picture strain.png
 
 or, in ParaView, Macros > Import new macro: it then shows the run whose particles.pvd is
-selected. Without a screen: xvfb-run pvpython ... Needs Debian's paraview and
+selected. Without a screen: xvfb-run -s -noreset pvpython ... Needs Debian's paraview and
 python3-paraview. Where pictures lack the field initial_domain, boxes are taken for squares
 and cubes at the start, which those of points that have split were not.
 """
@@ -37,11 +37,13 @@ def geometry(directory):
     return kind if kind in SIDE else "plane"
 
 
-def mirrored(source, kind):
+def mirrored(source, name, kind):
     """In the axis, which is x = 0."""
     if kind != "axisymmetric":
         return source
-    return simple.Reflect(Input=source, Plane="X", Center=0, CopyInput=1)
+    return simple.Reflect(
+        registrationName=f"{name}, mirrored", Input=source, Plane="X", Center=0, CopyInput=1
+    )
 
 
 def show(directory, field):
@@ -68,7 +70,7 @@ def show(directory, field):
     boxes.ExtractEigenvalues = boxes.LimitScalingByEigenvalues = 0
     boxes.ColorGlyphs = 1
     boxes.Scalars = ["POINTS", field]
-    boxes = mirrored(boxes, kind)
+    boxes = mirrored(boxes, "boxes", kind)
     shown = simple.Show(boxes, view)
     simple.ColorBy(shown, ("POINTS", field))
     colours = simple.GetColorTransferFunction(field)
@@ -85,7 +87,7 @@ def show(directory, field):
     shown.SetScalarBarVisibility(view, True)
 
     grid = simple.PVDReader(registrationName="grid", FileName=str(directory / "grid.pvd"))
-    cells = simple.Show(mirrored(grid, kind), view)
+    cells = simple.Show(mirrored(grid, "grid", kind), view)
     cells.SetRepresentationType("Outline" if kind == "3D" else "Wireframe")
     cells.ColorArrayName = ["POINTS", ""]
     cells.AmbientColor = cells.DiffuseColor = [0.6, 0.6, 0.6]

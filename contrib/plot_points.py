@@ -92,7 +92,8 @@ def draw(axes, points, values, norm, dim=2, is_axisymmetric=False, grid=None):
         size = diameters(points, dim, is_axisymmetric)[order]
         drawn = EllipseCollection(
             size, size, 0, units="xy", offsets=places[order], transOffset=axes.transData,
-            facecolor=colours[order], rasterized=True,
+            facecolor=colours[order], rasterized=True, linewidth=0.3 * (dim == 3),
+            edgecolor=(0, 0, 0, 0.3),
         )
         margin = size.max() / 2
         axes.update_datalim([places.min(axis=0) - margin, places.max(axis=0) + margin])

@@ -153,17 +153,19 @@ def points(runs, field, only_last=False):
     values = [data.size_of(field) if field else numpy.zeros(len(data.places))
               for _, _, data, _ in shown]
     norm = plot_points.limits(values)
-    is_plane = runs[0].dim == 2
-    spans = [numpy.ptp(data.places[:, :2], axis=0) for _, _, data, _ in shown]
-    wide, tall = numpy.max(spans, axis=0) if is_plane else (1, 0.9)
+    is_plane = all(run.dim == 2 for run in runs)
+    spans = numpy.array([numpy.ptp(data.places[:, :2], axis=0) for _, _, data, _ in shown])
+    wide, tall = spans.max(axis=0) if is_plane else (1, 0.9)
+    # on one scale, unless one of them would be a dot
+    shared = is_plane and bool(spans.max() < 5 * spans.max(axis=1).min())
     # slender bodies stand in one row, flat ones below each other
     columns = 1 if wide > 4 * tall else 3 if not only_last or tall > wide else 2
     columns = min(columns, len(shown))
     rows = -(-len(shown) // columns)
     height = min(max(9.4 / columns * tall / max(wide, 1e-300), 0.6), 7) + 0.6
     figure, axes = plt.subplots(
-        rows, columns, figsize=(10, rows * height + 0.7), squeeze=False, sharex=is_plane,
-        sharey=is_plane,
+        rows, columns, figsize=(10, rows * height + 0.7), squeeze=False, sharex=shared,
+        sharey=shared,
     )
     for axis in axes.flat[len(shown) :]:
         axis.set_visible(False)
@@ -171,7 +173,7 @@ def points(runs, field, only_last=False):
         cells = results.Data(grid) if grid and run.dim == 2 else None
         plot_points.draw(axis, data, of_points, norm, run.dim, run.is_axisymmetric, cells)
         axis.grid(False)
-        if is_plane:
+        if run.dim == 2:
             axis.locator_params(nbins=4 if columns > 1 else 8)
             axis.ticklabel_format(scilimits=(-4, 5), useMathText=True)
         name = f"{run.name}, " if len(runs) > 1 else ""

@@ -82,14 +82,14 @@ def picture_file(name):
 
 
 class Table(dict):
-    """Columns of a file by their names."""
+    """Columns of a file, or what is in a row, by the names of the columns."""
 
     def __init__(self, path, columns):
         super().__init__(columns)
         self.path = path
 
     def __missing__(self, name):
-        raise Refusal(f"'{self.path}' has no column '{name}', but {', '.join(self)}")
+        raise Refusal(f"'{self.path}' has no column '{name}', but {', '.join(self) or 'none'}")
 
 
 def read_rows(path):
@@ -97,17 +97,20 @@ def read_rows(path):
     try:
         with open(path, encoding="utf-8", newline="") as file:
             reader = csv.DictReader(file, restval="")
-            rows = list(reader)
+            rows = [Table(path, row) for row in reader]
             return rows, list(reader.fieldnames or ())
     except (UnicodeDecodeError, csv.Error):
         raise Refusal(f"'{path}' is no CSV file") from None
 
 
-def read_numbers(path):
-    """The columns of a CSV file as arrays; what is empty is not a number."""
+def read_numbers(path, grows=False):
+    """The columns of a CSV file as arrays; what is empty is not a number. Of a file that
+    grows, the last row may not have been written to its end."""
     import numpy
 
     rows, names = read_rows(path)
+    if grows and not Path(path).read_bytes().endswith(b"\n"):
+        del rows[-1:]
     columns = {}
     for name in names:
         try:
@@ -118,7 +121,7 @@ def read_numbers(path):
 
 
 def history(directory):
-    return read_numbers(Path(directory) / "history.csv")
+    return read_numbers(Path(directory) / "history.csv", grows=True)
 
 
 def read_json(path):
@@ -174,7 +177,7 @@ class Data:
 
     def __getitem__(self, name):
         if name not in self.names:
-            raise Refusal(f"'{self.path}' has no field '{name}', but {', '.join(self.names)}")
+            raise Refusal(f"'{self.path}' has no field '{name}', but {', '.join(self.names) or 'none'}")
         values = self.to_numpy(self.output.GetPointData().GetArray(name))
         return values.reshape(-1, 3, 3) if values.shape[1:] == (9,) else values
 

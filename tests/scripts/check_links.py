@@ -5,6 +5,7 @@ usage: tests/scripts/check_links.py [FILE...]
 
   links       [text](target), pictures and anchors, relative to the page
   code spans  `files` and folders, `Classes`, `function_names`, `Section/Entry`
+  entries     of a page whose scene is built in steps in prm/, which have to have them
   commands    in ```sh blocks and code spans: programs, options, scenes, entries of
               --set and presets; $variables of loops take all their values
 
@@ -23,8 +24,8 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent.parent
-# Folders that a page may name and nobody has in a clone.
-MADE = ("output", "build", "checkpoint", "bin", "share", "parameters.prm")
+# What a page may name and nobody has in a clone: of builds, runs, and the reader's own.
+MADE = ("output", "build", "checkpoint", "bin", "share", "parameters.prm", "strip.prm")
 ENDINGS = (".h", ".cc", ".py", ".prm", ".md", ".cmake", ".sh", ".sbatch", ".msh")
 PROGRAMS = set(
     "cd cmake cp ctest echo export git grep kill make module mpirun mkdir mv paraview rm sbatch"
@@ -247,6 +248,16 @@ def check_page(page):
     for block in re.finditer(r"^ *```sh\n(.*?)^ *```", text, flags=re.S | re.M):
         for flaw in check_shell(block[1]):
             yield text.count("\n", 0, block.start()) + 1, flaw
+    folder = ROOT / "prm" / page.stem
+    scenes = []
+    if (folder / "step_1.prm").exists():
+        scenes = [path.read_text() for path in folder.rglob("*.prm")]
+    for block in re.finditer(r"^```\n(subsection .*?)^```", text, flags=re.S | re.M):
+        if scenes and not any(block[1] in scene for scene in scenes):
+            yield (
+                text.count("\n", 0, block.start()) + 1,
+                f"these entries stand in no file of prm/{page.stem}/",
+            )
     prose = strip_blocks(text)
     for pattern, check in (
         (r"\]\(([^)\s]+)\)", functools.partial(check_link, page)),

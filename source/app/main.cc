@@ -3,7 +3,7 @@
 
 #include <impm/app/mpi_start.h>
 #include <impm/base/exceptions.h>
-#include <impm/input/parameter_messages.h>
+#include <impm/input/parameter_pages.h>
 #include <impm/run/signals.h>
 #include <impm/run/simulation.h>
 #include <impm/study/finer_run.h>
@@ -23,7 +23,7 @@ namespace
   void
   run(const CommandLine &line, ParameterFile &file)
   {
-    Scene<dim> scene = read_scene<dim>(file.handler(), line.parameter_file);
+    Scene<dim> scene = read_scene<dim>(file.handler());
     scene.warnings.insert(scene.warnings.begin(),
                           file.warnings.begin(),
                           file.warnings.end());
@@ -66,8 +66,47 @@ namespace
       }
     catch (const InputError &error)
       {
-        throw InputError("", file.describe(error));
+        // What is not finite may be behind another flaw.
+        const auto flaw = line.study ? std::nullopt : find_flaw(MPI_COMM_WORLD);
+        throw InputError("", file.describe(flaw ? *flaw : error));
       }
+    catch (const ComputationError &error)
+      {
+        throw ComputationError(
+          file.describe(InputError(error.entry, error.what())));
+      }
+  }
+
+  /** Prints parameters, or writes pages of them, on one rank. */
+  void
+  list_parameters(const CommandLine &line)
+  {
+    std::vector<ListedEntry> entries;
+    if (line.parameter_file.empty())
+      entries = all_entries();
+    else
+      {
+        ParameterFile file(line.parameter_file, line.overrides, declare_file);
+        try
+          {
+            if (scene_dimension(file.handler()) == 3)
+              read_scene<3>(file.handler());
+            else
+              read_scene<2>(file.handler());
+          }
+        catch (const InputError &error)
+          {
+            throw InputError("", file.describe(error));
+          }
+        for (const auto &warning : file.warnings)
+          std::cerr << "impm_dealii: warning: " << warning << std::endl;
+        entries = entries_of_scene(file);
+      }
+    if (line.listing == "markdown")
+      write_pages(entries, line.output_directory);
+    else
+      std::cout << (line.listing == "json" ? as_json(entries) :
+                                             as_text(entries));
   }
 } // namespace
 
@@ -95,15 +134,20 @@ main(int argc, char **argv)
       const CommandLine line = parse_command_line(argc, argv);
       // What needs no MPI does not wait for it, and what a study starts can
       // start it only if the study itself has not.
-      if (is_alone && line.answer.empty() && !line.study)
+      const bool computes = line.answer.empty() && line.listing.empty();
+      if (is_alone && computes && !line.study)
         {
           prepare_mpi_for_one_process();
           mpi.emplace(argc, argv, 1);
         }
-      if (line.answer.empty())
+      if (computes)
         compute(line);
       else if (errors.is_active())
-        std::cout << line.answer;
+        {
+          std::cout << line.answer;
+          if (line.answer.empty())
+            list_parameters(line);
+        }
     }
   catch (const InputError &error)
     {

@@ -3,6 +3,7 @@
 #include <impm/balance/terms/following_loads.h>
 #include <impm/balance/terms/isolated_cells.h>
 #include <impm/base/exceptions.h>
+#include <impm/input/expressions.h>
 
 #include <algorithm>
 #include <cmath>
@@ -226,21 +227,8 @@ namespace impm
   void
   StepProblem<dim>::check_loads() const
   {
-    bool is_finite = true;
-    if (loads)
-      is_finite = std::isfinite(loads->at_start.l1_norm()) &&
-                  std::isfinite(loads->at_end.l1_norm());
-    if (following_loads)
-      {
-        Vector at_rest;
-        discretization->initialize(at_rest);
-        is_finite = following_loads->evaluate(at_rest, false) && is_finite;
-      }
-    if (Utilities::MPI::min(is_finite ? 1 : 0, discretization->communicator) ==
-        0)
-      throw ComputationError("at t = " + Utilities::to_string(time + dt) +
-                             " s: the value of a load is no finite number "
-                             "(section Loads, or a face)");
+    if (const auto flaw = find_flaw(discretization->communicator))
+      throw ComputationError(flaw->what(), flaw->entry);
   }
 
   template <int dim>

@@ -24,21 +24,6 @@ namespace impm
     return content.str();
   }
 
-  std::string
-  find_file(const std::string &name,
-            const std::string &parameter_file,
-            const std::string &scene)
-  {
-    const auto folder = std::filesystem::path(parameter_file).parent_path();
-    const auto beside = folder / name;
-    const auto beside_scene =
-      (folder / scene).lexically_normal().parent_path() / name;
-    for (const auto &path : {beside, beside_scene})
-      if (std::filesystem::exists(path))
-        return path.string();
-    return name;
-  }
-
   void
   replace_file(const std::string &name, const std::string &content)
   {

@@ -6,6 +6,7 @@
 
 #include <impm/base/memory.h>
 #include <impm/grid/background_grid.h>
+#include <impm/input/expressions.h>
 
 #include <algorithm>
 #include <cmath>
@@ -50,6 +51,8 @@ namespace impm
         triangulation.execute_coarsening_and_refinement();
       }
     place_vertices();
+    if (const auto flaw = find_flaw(communicator))
+      throw InputError(*flaw); // before cells of such places
     current = std::make_shared<Discretization<dim>>(
       std::make_shared<NodeNumbering<dim>>(
         triangulation, coarse_cells, spec.n_layers, 1),
@@ -146,6 +149,8 @@ namespace impm
   BackgroundGrid<dim>::renumber()
   {
     place_vertices();
+    if (const auto flaw = find_flaw(communicator))
+      throw InputError(*flaw); // before cells of such places
     current = std::make_shared<Discretization<dim>>(
       std::make_shared<NodeNumbering<dim>>(triangulation,
                                            coarse_cells,
@@ -182,6 +187,8 @@ namespace impm
     make_coarse_cells();
     triangulation.load(file_name);
     place_vertices();
+    if (const auto flaw = find_flaw(communicator))
+      throw InputError(*flaw); // before cells of such places
     current = std::make_shared<Discretization<dim>>(
       std::make_shared<NodeNumbering<dim>>(
         triangulation, coarse_cells, spec.n_layers, epoch),

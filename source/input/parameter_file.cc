@@ -1,241 +1,300 @@
 #include <deal.II/base/patterns.h>
 #include <deal.II/base/utilities.h>
 
-#include <impm/base/files.h>
 #include <impm/base/names.h>
 #include <impm/input/parameter_file.h>
-#include <impm/input/parameter_messages.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
+#include <map>
 #include <set>
 #include <sstream>
-#include <utility>
 
 namespace impm
 {
-  using boost::algorithm::istarts_with;
   using dealii::ParameterHandler;
-  using Path = std::vector<std::string>;
 
   namespace
   {
-    Path
+    std::vector<std::string>
     split_path(const std::string &path)
     {
       return dealii::Utilities::split_string_list(path, '/');
     }
 
-    /** `Section/Name=value` as the text of a parameter file. */
+    /** "Materials/steel" of "Materials/steel/Law". */
     std::string
-    override_as_text(const std::string &override)
+    section_of(const std::string &path)
     {
-      const auto refuse = [&](const std::string &why) {
-        throw InputError("", "--set " + override + ": " + why);
-      };
-      const auto equal = override.find('=');
-      const auto path  = split_path(override.substr(0, equal));
-      if (equal == std::string::npos)
-        refuse("found no '=', allowed is Section/Name=value");
-      if (path.empty())
-        refuse("found no name, allowed is Section/Name=value");
-      if (path == split_path("Study/Scene"))
-        refuse("only a file sets it");
-      std::string text =
-        "set " + path.back() + " = " + override.substr(equal + 1) + "\n";
-      for (auto section = path.rbegin() + 1; section != path.rend(); ++section)
-        text = "subsection " + *section + "\n" + text + "end\n";
-      return text;
+      const auto slash = path.rfind('/');
+      return slash == std::string::npos ? "" : path.substr(0, slash);
     }
 
-    /** Refuses what ParameterHandler would take, and should not, here and in
-     * the files that are included. `above` are those that include this one. */
-    void
-    check_lines(const std::string    &text,
-                const std::string    &name,
-                std::set<std::string> above = {})
+    /** All sections in which entries or sections stand, the top as "". */
+    template <typename Paths>
+    std::set<std::string>
+    sections_of(const Paths &paths)
     {
-      std::error_code ignored;
-      above.insert(std::filesystem::weakly_canonical(name, ignored).string());
-      const auto lines = split(text, '\n');
-      for (unsigned int i = 0; i < lines.size(); ++i)
-        {
-          const auto refuse = [&](const std::string &allowed) {
-            throw InputError("",
-                             place_of(name, i + 1) + ": found '" + lines[i] +
-                               "', allowed " + allowed);
-          };
-          if (istarts_with(lines[i], "include ") ||
-              istarts_with(lines[i], "include\t"))
-            {
-              const std::string other =
-                dealii::Utilities::trim(lines[i].substr(8));
-              // It would read on for ever.
-              if (above.count(std::filesystem::weakly_canonical(other, ignored)
-                                .string()) > 0)
-                refuse("is a file that does not include this one");
-              std::ifstream      in(other);
-              std::ostringstream all;
-              if (std::filesystem::is_regular_file(other, ignored) &&
-                  all << in.rdbuf())
-                check_lines(all.str(), other, above);
-            }
-          // It would find a number here, and fail to read it.
-          const auto words = split(lines[i].substr(0, lines[i].find('#')), '=');
-          if (words.size() == 2 && is_too_small(words[1]))
-            refuse("are 0 and numbers that are not as small");
-        }
+      std::set<std::string> sections;
+      for (std::string path : paths)
+        while (!path.empty() && sections.insert(section_of(path)).second)
+          path = section_of(path);
+      return sections;
     }
 
-    void
-    parse(ParameterHandler  &prm,
-          const std::string &text,
-          const std::string &name,
-          const bool         strict)
+    std::vector<std::string>
+    paths_of(const std::vector<ParameterEntry> &entries)
     {
-      check_lines(text, name);
-      std::istringstream in(text);
-      try
-        {
-          prm.parse_input(in, name, "", !strict);
-        }
-      catch (dealii::ExceptionBase &exception)
-        {
-          throw InputError("", describe_error(exception, text, prm));
-        }
+      std::vector<std::string> paths;
+      for (const auto &entry : entries)
+        paths.push_back(entry.path);
+      return paths;
     }
 
-    /** Choices between methods for one and the same problem. */
+    /** Names of what stands in a section. */
+    std::string
+    names_within(const std::string              &section,
+                 const std::vector<std::string> &all)
+    {
+      std::vector<std::string> names;
+      for (const auto &path : all)
+        if (!path.empty() && section_of(path) == section)
+          names.push_back(
+            path.substr(section.empty() ? 0 : section.size() + 1));
+      return names.empty() ? "none" : join(names, ", ");
+    }
+
     bool
-    is_method(const std::string &path)
+    is_switched_off(const std::string &path, const EntryValues &values)
     {
-      static const std::set<std::string> methods = {"Grid/Method",
-                                                    "Time/Integrator",
-                                                    "Time/Formulation",
-                                                    "Time/CFL number",
-                                                    "Solver/Nonlinear solver",
-                                                    "Solver/Convergence",
-                                                    "Solver/Linear solver",
-                                                    "Solver/Operator"};
-      return methods.count(path) > 0 ||
-             split_path(path).back() == "Points from";
-    }
-
-    /** Also false for a directory, which opens as a file. */
-    bool
-    has_text(const std::string &file_name)
-    {
-      return std::ifstream(file_name).peek() !=
-             std::ifstream::traits_type::eof();
-    }
-
-    std::set<Path>
-    declared_entries(const ParameterHandler &prm)
-    {
-      std::set<Path> entries;
-      for (const auto &line : lines_of(text_of(prm)))
-        if (!line.is_subsection)
-          entries.insert(line.path);
-      return entries;
+      for (auto section = section_of(path); !section.empty();
+           section      = section_of(section))
+        if (chosen_in(values)(section + "/Enabled", "") == "false")
+          return true;
+      return false;
     }
   } // namespace
 
-  ParameterFile::ParameterFile(
-    const std::string                                             &file_name,
-    const std::vector<std::string>                                &overrides,
-    const std::function<void(ParameterHandler &, const Chosen &)> &declare)
+  ParameterFile::ParameterFile(const std::string              &file_name,
+                               const std::vector<std::string> &overrides,
+                               const DeclareEntries           &declare)
     : file_name(file_name)
+    , lines(read_parameter_text(file_name))
+    , prm(std::make_unique<ParameterHandler>())
   {
-    if (!has_text(file_name))
-      throw InputError("",
-                       "cannot read the parameter file '" + file_name +
-                         "', or it is empty");
-    sources.push_back({file_name, content_of(file_name)});
     read_scene_of_study();
     for (const auto &override : overrides)
-      sources.push_back({"--set " + override, override_as_text(override)});
-
-    // Lists of names, then what each name chooses, then what that choice
-    // declares (a union may name other shapes), then what a choice among that
-    // declares (the constants of a law): four readings find them.
-    const unsigned int n_readings = 4;
-    prm                           = std::make_unique<ParameterHandler>();
-    for (unsigned int reading = 1; reading <= n_readings; ++reading)
       {
-        const bool strict = reading == n_readings;
-        const auto before =
-          std::exchange(prm, std::make_unique<ParameterHandler>());
-        const Chosen chosen = chosen_in(*before);
-        declare(*prm, chosen);
-        if (strict)
-          {
-            ParameterHandler others;
-            declare(others,
-                    [&](const std::string &path, const std::string &fallback) {
-                      return is_method(path) ? "any" : chosen(path, fallback);
-                    });
-            drop_idle_entries(others);
-          }
-        for (const auto &source : sources)
-          parse(*prm, source.text, source.name, strict);
+        lines.push_back(parameter_override(override, file_name));
+        if (join(lines.back().path, "/") == "Study/Scene")
+          throw InputError("", lines.back().place() + ": only a file sets it");
       }
+    EntryValues values;
+    for (const auto &line : lines)
+      if (!line.is_subsection)
+        values[join(line.path, "/")] = line.value;
+    declare(*prm, chosen_in(values));
+
+    const auto                         entries = entries_of(*prm);
+    std::map<std::string, std::string> patterns;
+    for (const auto &entry : entries)
+      patterns[entry.path] = entry.pattern;
+    const auto     sections = sections_of(paths_of(entries));
+    ParameterLines idle;
+    for (auto line = lines.begin(); line != lines.end(); ++line)
+      {
+        const auto path = join(line->path, "/");
+        const auto next = line + 1;
+        // An empty section that has no entries does no harm.
+        if (line->is_subsection && prm->subsection_path_exists(line->path) &&
+            (next == lines.end() || next->path.size() <= line->path.size()))
+          continue;
+        if (line->is_subsection ? sections.count(path) == 0 :
+                                  patterns.count(path) == 0)
+          idle.push_back(*line);
+        else if (!line->is_subsection)
+          set(*line, patterns[path]);
+      }
+    if (!idle.empty())
+      judge(idle, values, entries, declare);
   }
 
   void
   ParameterFile::read_scene_of_study()
   {
-    ParameterHandler handler;
-    in_section(handler, "Study", [&]() { handler.declare_entry("Scene", ""); });
-    parse(handler, sources.back().text, file_name, false);
-    const std::string scene = chosen_in(handler)("Study/Scene", "");
-    if (scene.empty())
+    const ParameterLine *found = nullptr;
+    for (const auto &line : lines)
+      if (!line.is_subsection && join(line.path, "/") == "Study/Scene")
+        found = &line;
+    if (!found || found->value.empty())
       return;
     const auto refuse = [&](const std::string &why) {
       throw InputError("",
-                       locate("Study/Scene") +
-                         ": entry 'Study/Scene': found '" + scene + "', " +
-                         why);
+                       found->place() + ": entry 'Study/Scene': found '" +
+                         found->value + "', " + why);
     };
     const auto name =
-      (std::filesystem::path(file_name).parent_path() / scene).string();
-    if (!has_text(name))
-      refuse(
-        "allowed is the path of a parameter file from here; cannot read '" +
-        name + "', or it is empty");
-    const std::string text = content_of(name);
-    for (const auto &line : lines_of(text))
+      (std::filesystem::path(found->file).parent_path() / found->value)
+        .string();
+    ParameterLines scene;
+    try
+      {
+        scene = read_parameter_text(name);
+      }
+    catch (const InputError &error)
+      {
+        const std::string why = error.what();
+        if (why.rfind("cannot read", 0) != 0)
+          throw;
+        refuse("allowed is the path of a parameter file from here: " + why);
+      }
+    for (const auto &line : scene)
       if (line.path[0] == "Study")
-        refuse("which has in line " + std::to_string(line.number) +
-               " a section Study of its own, allowed is a scene without");
-    sources.insert(sources.begin(), {name, text});
+        refuse("which has a section Study of its own (" + line.place() +
+               "), allowed is a scene without");
+    lines.insert(lines.begin(), scene.begin(), scene.end());
   }
 
   void
-  ParameterFile::drop_idle_entries(const ParameterHandler &others)
+  ParameterFile::set(const ParameterLine &line, const std::string &pattern)
   {
-    const auto active = declared_entries(*prm), all = declared_entries(others);
-    for (auto &source : sources)
+    const auto &name = line.path.back();
+    for (unsigned int i = 0; i + 1 < line.path.size(); ++i)
+      prm->enter_subsection(line.path[i]);
+    try
       {
-        // Lines stay where they are, for messages that count them.
-        auto kept = split(source.text, '\n');
-        for (const auto &line : lines_of(source.text))
-          if (active.count(line.path) == 0 && all.count(line.path) > 0)
-            {
-              kept[line.number - 1].clear();
-              warnings.push_back(place_of(source.name, line.number) +
-                                 ": entry '" + join(line.path, "/") +
-                                 "' does nothing in this scene");
-            }
-        source.text = join(kept, "\n");
+        prm->set(name, line.value);
+      }
+    catch (const ParameterHandler::ExcValueDoesNotMatchPattern &)
+      {
+        throw InputError("",
+                         line.place() + ": entry '" + name + "': found '" +
+                           abridged(line.value) + "', allowed is " +
+                           in_words(pattern));
+      }
+    for (unsigned int i = 0; i + 1 < line.path.size(); ++i)
+      prm->leave_subsection();
+  }
+
+  void
+  ParameterFile::judge(const ParameterLines              &idle,
+                       const EntryValues                 &values,
+                       const std::vector<ParameterEntry> &declared,
+                       const DeclareEntries              &declare)
+  {
+    std::set<std::string> unknown;
+    for (const auto &line : idle)
+      unknown.insert(join(line.path, "/"));
+    const auto near = sections_of(unknown);
+
+    // What the file has said of an entry before, and other values of choices
+    // that may matter.
+    std::map<std::string, std::vector<std::string>> said;
+    for (const auto &line : lines)
+      if (!line.is_subsection)
+        said[join(line.path, "/")].push_back(line.value);
+    const auto other_values =
+      [&](const ParameterEntry &entry) -> std::vector<std::string> {
+      static const std::set<std::string> decisive = {"Geometry",
+                                                     "Grid",
+                                                     "Time",
+                                                     "Solver"};
+      const auto                         section  = section_of(entry.path);
+      const bool is_choice = boost::starts_with(entry.pattern, "[Selection");
+      if (near.count(section) == 0 &&
+          !(is_choice && decisive.count(section) > 0))
+        return {};
+      auto       all    = typical_values(entry);
+      const auto before = said.find(entry.path);
+      if (before != said.end())
+        all.insert(all.end(), before->second.begin(), before->second.end());
+      return all;
+    };
+    std::map<std::string, std::string> reasons; // by path
+    const auto look = [&](const EntryValues &method, const EntryValues &given) {
+      auto start = method;
+      start.insert(values.begin(), values.end());
+      start.insert(given.begin(), given.end());
+      explore(declare,
+              start,
+              other_values,
+              [&](const ParameterEntry &entry, EntryValues changed) {
+                changed.insert(method.begin(), method.end());
+                for (auto path = entry.path; !path.empty();
+                     path      = section_of(path))
+                  if (unknown.erase(path) > 0)
+                    reasons[path] = in_words(changed);
+                return !unknown.empty();
+              });
+    };
+    look({}, {});
+    // What wants two other choices: one of them another method, or that an
+    // entry is given which may be empty.
+    EntryValues given;
+    for (const auto &entry : declared)
+      if (entry.default_value.empty() && near.count(section_of(entry.path)) > 0)
+        given[entry.path] = "1";
+    if (!unknown.empty())
+      look({}, given);
+    for (const auto &entry : declared)
+      if (entry.path == "Geometry/Kind" || entry.path == "Grid/Method" ||
+          entry.path == "Time/Integrator")
+        for (const auto &method : typical_values(entry))
+          if (!unknown.empty() &&
+              method != chosen_in(values)(entry.path, entry.default_value))
+            look({{entry.path, method}}, {});
+
+    const auto               allowed  = paths_of(declared);
+    const auto               sections = sections_of(allowed);
+    std::vector<std::string> section_names; // in the order of declaration
+    for (const auto &path : allowed)
+      for (const auto &section : sections_of(std::vector{path}))
+        if (std::count(section_names.begin(), section_names.end(), section) ==
+            0)
+          section_names.push_back(section);
+    std::set<std::string> sections_without_use;
+    for (const auto &line : idle)
+      {
+        const auto path   = join(line.path, "/");
+        const auto reason = reasons.find(path);
+        if (reason == reasons.end())
+          {
+            auto name = path;
+            while (sections.count(section_of(name)) == 0)
+              name = section_of(name);
+            const bool is_section = line.is_subsection || name != path;
+            const auto section    = section_of(name);
+            throw InputError(
+              "",
+              line.place() + ": found " +
+                (is_section ? "subsection" : "entry") + " '" +
+                abridged(
+                  name.substr(section.empty() ? 0 : section.size() + 1)) +
+                "', which this scene does not have" +
+                (is_section ? " (a list of names may lack it)" : "") +
+                "; allowed here are: " +
+                names_within(section, is_section ? section_names : allowed));
+          }
+        const bool is_told =
+          sections_without_use.count(line.file + section_of(path)) > 0;
+        if (line.is_subsection)
+          sections_without_use.insert(line.file + path);
+        if (!is_told && !is_switched_off(path, values))
+          warnings.push_back(
+            line.place() + ": " +
+            (line.is_subsection ? "subsection" : "entry") + " '" + path +
+            "' does nothing in this scene; it would " + reason->second);
       }
   }
 
   std::string
   ParameterFile::resolved(const std::vector<std::string> &without) const
   {
-    std::istringstream all(text_of(*prm));
+    std::stringstream all;
+    prm->print_parameters(all,
+                          ParameterHandler::ShortPRM |
+                            ParameterHandler::KeepDeclarationOrder);
     // Only sections of the top are not indented.
     const std::string keyword = "subsection ";
     std::string       text, line;
@@ -255,12 +314,10 @@ namespace impm
   std::string
   ParameterFile::locate(const std::string &path) const
   {
-    const Path  wanted = split_path(path);
-    std::string place  = "file " + file_name + " (entry not set there)";
-    for (const auto &source : sources)
-      for (const auto &line : lines_of(source.text))
-        if (line.path == wanted)
-          place = place_of(source.name, line.number);
+    std::string place = "file " + file_name + " (entry not set there)";
+    for (const auto &line : lines)
+      if (!line.is_subsection && join(line.path, "/") == path)
+        place = line.place();
     return place;
   }
 
@@ -273,7 +330,7 @@ namespace impm
            error.what();
   }
 
-  ParameterFile::Chosen
+  Chosen
   chosen_in(ParameterHandler &prm)
   {
     return [&prm](const std::string &path, const std::string &fallback) {
@@ -284,9 +341,7 @@ namespace impm
         return fallback;
       try
         {
-          // what is not declared reads as "" where deal.II does not check
-          const std::string value = prm.get(sections, name);
-          return value.empty() ? fallback : value;
+          return prm.get(sections, name);
         }
       catch (const ParameterHandler::ExcEntryUndeclared &)
         {
@@ -303,6 +358,38 @@ namespace impm
     return names;
   }
 
+  std::vector<std::string>
+  names_in(const Chosen &chosen, const std::string &list)
+  {
+    auto names = split_names(chosen(list, ""));
+    names.erase(std::remove_if(names.begin(),
+                               names.end(),
+                               [&](const auto &name) {
+                                 return !is_path(name) &&
+                                        chosen(section_of(list) + "/" + name +
+                                                 "/Enabled",
+                                               "") == "false";
+                               }),
+                names.end());
+    return names;
+  }
+
+  bool
+  is_path(const std::string &name)
+  {
+    return name.find('/') != std::string::npos;
+  }
+
+  namespace
+  {
+    std::vector<std::string> &
+    open_sections()
+    {
+      static std::vector<std::string> sections;
+      return sections;
+    }
+  } // namespace
+
   void
   in_section(ParameterHandler            &prm,
              const std::string           &path,
@@ -311,8 +398,10 @@ namespace impm
     const auto sections = split_path(path);
     for (const auto &section : sections)
       prm.enter_subsection(section);
+    open_sections().push_back(path);
     // Leaves them again, whatever happens.
     const std::shared_ptr<void> leave(nullptr, [&](void *) {
+      open_sections().pop_back();
       for (unsigned int i = 0; i < sections.size(); ++i)
         prm.leave_subsection();
     });
@@ -325,6 +414,15 @@ namespace impm
         throw InputError(error.entry.empty() ? path : path + "/" + error.entry,
                          error.what());
       }
+  }
+
+  std::string
+  current_section()
+  {
+    std::string path;
+    for (const auto &section : open_sections())
+      path += section + "/";
+    return path;
   }
 
   void

@@ -37,8 +37,7 @@ namespace impm
     law(const std::string &name, const bool locks = false)
     {
       return {name,
-              [](dealii::ParameterHandler    &prm,
-                 const ParameterFile::Chosen &chosen) {
+              [](dealii::ParameterHandler &prm, const Chosen &chosen) {
                 Parameters::declare_parameters(prm, chosen);
                 declare_density(prm);
               },
@@ -64,8 +63,7 @@ namespace impm
 
     /** The name of the hardening and the entries of that one alone. */
     void
-    declare_hardening(dealii::ParameterHandler    &prm,
-                      const ParameterFile::Chosen &chosen)
+    declare_hardening(dealii::ParameterHandler &prm, const Chosen &chosen)
     {
       std::vector<std::string> names;
       Hardenings::for_each(
@@ -77,7 +75,7 @@ namespace impm
       const std::string name = chosen("Hardening", names.front());
       Hardenings::for_each([&](const auto type) {
         using Hardening = typename decltype(type)::type;
-        if (name == Hardening::name || name == "any")
+        if (name == Hardening::name)
           Hardening::Parameters::declare_parameters(prm, chosen);
       });
     }
@@ -88,8 +86,7 @@ namespace impm
     law_that_yields(const std::string &name, const bool locks = false)
     {
       return {name,
-              [](dealii::ParameterHandler    &prm,
-                 const ParameterFile::Chosen &chosen) {
+              [](dealii::ParameterHandler &prm, const Chosen &chosen) {
                 ElasticConstants::declare_parameters(prm, chosen);
                 declare_density(prm);
                 declare_hardening(prm, chosen);

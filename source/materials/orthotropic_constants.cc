@@ -55,7 +55,7 @@ namespace impm
 
   void
   OrthotropicConstants::declare_parameters(ParameterHandler &prm,
-                                           const ParameterFile::Chosen &)
+                                           const Chosen &)
   {
     const Patterns::Double positive(1e-300);
     declare_number_list(prm,

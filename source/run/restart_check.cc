@@ -1,6 +1,6 @@
 #include <impm/base/exceptions.h>
 #include <impm/base/names.h>
-#include <impm/input/parameter_messages.h>
+#include <impm/input/parameter_text.h>
 #include <impm/run/restart_check.h>
 
 #include <algorithm>
@@ -16,16 +16,10 @@ namespace impm
     Entries
     entries_of(const std::string &text)
     {
-      const auto lines = split(text, '\n');
-      Entries    entries;
-      for (const auto &line : lines_of(text))
+      Entries entries;
+      for (const auto &line : parameter_lines(text))
         if (!line.is_subsection)
-          {
-            const auto &words = lines[line.number - 1];
-            entries.emplace_back(join(line.path, "/"),
-                                 boost::trim_copy(
-                                   words.substr(words.find('=') + 1)));
-          }
+          entries.emplace_back(join(line.path, "/"), line.value);
       return entries;
     }
 

@@ -1,5 +1,7 @@
 #include <deal.II/base/utilities.h>
 
+#include <deal.II/lac/vector.h>
+
 #include <impm/balance/heat_conduction.h>
 #include <impm/balance/terms/contact.h>
 #include <impm/base/exceptions.h>
@@ -7,6 +9,7 @@
 #include <impm/footprints/transfer.h>
 #include <impm/grid/grips.h>
 #include <impm/grid/touching.h>
+#include <impm/input/expressions.h>
 #include <impm/run/motion_limits.h>
 #include <impm/run/run_directory.h>
 #include <impm/run/signals.h>
@@ -91,6 +94,16 @@ namespace impm
     , warnings(scene.warnings)
   {
     check_grips(scene.grips, points);
+    if (const auto &force = scene.loads.body_force)
+      {
+        // As the first step will, which is no longer bad input.
+        dealii::Vector<double> value(dim);
+        force->set_time(std::min(scene.time.step, scene.time.end));
+        for (const auto &particle : points.sorted.particles)
+          force->vector_value(particle.get_location(), value);
+      }
+    if (const auto flaw = find_flaw(communicator))
+      throw InputError(*flaw);
   }
 
   template <int dim>
@@ -231,6 +244,7 @@ namespace impm
         report_instability(solution.unstable_mode);
         jump.mode = solution.unstable_mode;
       }
+    check_expressions();
     if (!solution.converged)
       return solution.failure;
     problem->footprints.move_points(result.increment, increments);
@@ -440,6 +454,14 @@ namespace impm
 
   template <int dim>
   void
+  Simulation<dim>::check_expressions() const
+  {
+    if (const auto flaw = find_flaw(communicator))
+      throw ComputationError(flaw->what(), flaw->entry);
+  }
+
+  template <int dim>
+  void
   Simulation<dim>::picture(const bool grid_has_increment)
   {
     TimerOutput::Scope scope(timer, "output");
@@ -533,6 +555,7 @@ namespace impm
         while (!is_over(total.step, time))
           {
             advance();
+            check_expressions();
             since_row.append(report);
             const bool last = is_over(total.step, time);
             if (row_is_due(total.step, time))
@@ -550,13 +573,17 @@ namespace impm
       }
     catch (const ComputationError &error)
       {
+        // What is not finite may be behind another flaw.
+        const auto             flaw = find_flaw(communicator);
+        const ComputationError cause =
+          flaw ? ComputationError(flaw->what(), flaw->entry) : error;
         console.finish();
         picture(false);
         // What a step has left half done is nothing to go on from.
         if (is_between_steps)
-          save_checkpoint(error.what());
-        write_summary(error.what());
-        throw;
+          save_checkpoint(cause.what());
+        write_summary(cause.what());
+        throw cause;
       }
     report_energy_loss();
     write_summary("done", finer_runs);

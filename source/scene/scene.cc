@@ -1,6 +1,7 @@
 #include <impm/balance/terms/loads.h>
 #include <impm/footprints/footprint_builder.h>
 #include <impm/grid/touching.h>
+#include <impm/output/history.h>
 #include <impm/scene/scene.h>
 
 #include <boost/algorithm/cxx11/any_of.hpp>
@@ -54,6 +55,24 @@ namespace impm
           "Pairs", "allowed in the momentum formulation is none");
     }
 
+    /** Columns of the history have names of their own. */
+    template <int dim>
+    void
+    check_columns(const Section &top, const Scene<dim> &scene)
+    {
+      const auto columns = History<dim>::column_names(scene);
+      const auto check   = [&](const std::string &list, const auto &items) {
+        for (const auto &item : items)
+          if (std::count(columns.begin(), columns.end(), item.name) > 1)
+            top.subsection("Output").fail(
+              list,
+              "found '" + item.name +
+                "', which is taken by another column of the history");
+      };
+      check("Probes", scene.output.probes);
+      check("Reactions", scene.output.reactions);
+    }
+
     /** Which faces hold by touch: that come to material, or to which it comes
      * without inertia. Not those that draw material away from themselves, nor
      * walls from which it has to part again: what touches is glued. Points that
@@ -79,14 +98,14 @@ namespace impm
     /** Declares, or reads and checks. */
     template <int dim>
     Scene<dim>
-    add_scene(Section top, const std::string &parameter_file)
+    add_scene(Section top)
     {
       Scene<dim>       scene;
       NamedShapes<dim> shapes;
       NamedMaterials   materials;
       add_general(top, scene.general);
       top.constants = scene.general.constants;
-      add_geometry(top, scene.geometry, shapes, parameter_file);
+      add_geometry(top, scene.geometry, shapes);
       add_grid(top, scene.grid, scene.geometry);
       const bool lagrangian = scene.grid.is_lagrangian();
       scene.history.emplace(scene.geometry);
@@ -121,7 +140,10 @@ namespace impm
                           [](const auto &face) { return face.is_pressed; }));
       add_stabilization(top, scene.stabilization, scene.time, lagrangian);
       add_output(top, scene.output, scene.faces, scene.grips, scene.bodies);
-      add_references(top, scene.references, parameter_file);
+      add_references(top, scene.references);
+
+      if (top.is_read)
+        check_columns(top, scene);
 
       // Nothing else holds what no body and no other shape uses.
       for (const auto &[name, shape] : shapes)
@@ -136,12 +158,12 @@ namespace impm
   } // namespace
 
   void
-  declare_scene(ParameterHandler &prm, const ParameterFile::Chosen &chosen)
+  declare_scene(ParameterHandler &prm, const Chosen &chosen)
   {
     if (is_three_d(chosen))
-      add_scene<3>({prm, chosen}, "");
+      add_scene<3>({prm, chosen});
     else
-      add_scene<2>({prm, chosen}, "");
+      add_scene<2>({prm, chosen});
   }
 
   int
@@ -152,9 +174,10 @@ namespace impm
 
   template <int dim>
   Scene<dim>
-  read_scene(ParameterHandler &prm, const std::string &parameter_file)
+  read_scene(ParameterHandler &prm)
   {
-    return add_scene<dim>(Section(prm), parameter_file);
+    forget_flaw();
+    return add_scene<dim>(Section(prm));
   }
 
   template <int dim>
@@ -233,9 +256,9 @@ namespace impm
   }
 
   template Scene<2>
-  read_scene<2>(ParameterHandler &, const std::string &);
+  read_scene<2>(ParameterHandler &);
   template Scene<3>
-  read_scene<3>(ParameterHandler &, const std::string &);
+  read_scene<3>(ParameterHandler &);
   template PointLayout
   choose_layout(const Scene<2> &);
   template PointLayout

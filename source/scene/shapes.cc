@@ -345,22 +345,21 @@ namespace impm
     {
       // No limit on the length of lists, as create() has more to say about it.
       const Value point{Patterns::List(Patterns::Double()).clone(),
-                        std::to_string(dim) + " coordinates [m]."};
+                        "Coordinates [m], one for each direction."};
       const Value radius{Patterns::Double(0).clone(), "Positive [m].", "0"};
       const Value names{Patterns::List(Patterns::Anything()).clone(),
                         "Names of shapes that come before this one."};
-      const Value expression{Patterns::Anything().clone(),
-                             "Expression in " +
-                               FunctionParser<dim>::default_variable_names() +
-                               " [m] and the constants; 0 is the surface."};
+      const Value expression{
+        Patterns::Anything().clone(),
+        "Expression in x, y, z [m] and the constants; 0 is the "
+        "surface."};
 
       const Value file{
         Patterns::Anything().clone(),
-        std::string(".msh, .vtk, .inp (Abaqus), .ucd") +
-          (dim == 3 ? ", .stl" : "") +
-          ": a mesh, whose boundary is taken, or a closed surface."};
+        ".msh, .vtk, .inp (Abaqus), .ucd, in 3D .stl: a mesh, whose boundary is "
+        "taken, or a closed surface; a path from the file that sets it."};
       const Value scale{Patterns::Double().clone(),
-                        "Numbers of the file times this are metres.",
+                        "Numbers of the file times this are metres, positive.",
                         "1",
                         false};
       const Value shift{Patterns::List(Patterns::Double()).clone(),

@@ -46,7 +46,7 @@ namespace impm
                              directory + "/reference_" + spec.name :
                              spec.directory,
                            file.resolved({"Reference", "Study"}),
-                           read_scene<dim>(file.handler(), line.parameter_file),
+                           read_scene<dim>(file.handler()),
                            false};
             task.scene.references.clear();
             const auto columns = History<dim>::column_names(task.scene);

@@ -3,7 +3,6 @@
 
 #include <impm/base/exceptions.h>
 #include <impm/base/names.h>
-#include <impm/input/parameter_messages.h>
 #include <impm/scene/scene.h>
 #include <impm/study/study.h>
 
@@ -166,7 +165,7 @@ namespace impm
   } // namespace
 
   void
-  declare_file(ParameterHandler &prm, const ParameterFile::Chosen &chosen)
+  declare_file(ParameterHandler &prm, const Chosen &chosen)
   {
     declare_scene(prm, chosen);
     prm.enter_subsection("Study");

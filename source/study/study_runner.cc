@@ -17,6 +17,7 @@
 #include <filesystem>
 #include <iomanip>
 #include <iostream>
+#include <set>
 #include <sstream>
 
 namespace impm
@@ -28,9 +29,7 @@ namespace impm
      * has no such figures.
      */
     std::string
-    resolve(const CommandLine              &line,
-            const StudyRun                 &run,
-            const std::vector<std::string> &columns)
+    resolve(const CommandLine &line, const StudyRun &run, const StudySpec &spec)
     {
       auto overrides = line.overrides;
       overrides.insert(overrides.end(),
@@ -44,13 +43,22 @@ namespace impm
                                                  declare_file);
           auto      &prm = file->handler();
           const auto output  = scene_dimension(prm) == 3 ?
-                                 read_scene<3>(prm, line.parameter_file).output :
-                                 read_scene<2>(prm, line.parameter_file).output;
+                                 read_scene<3>(prm).output :
+                                 read_scene<2>(prm).output;
           auto       figures = names_of(output.probes);
           for (const auto &reaction : output.reactions)
             figures.push_back(reaction.name);
-          for (const auto &column : columns)
+          for (const auto &column : spec.columns)
             require_name(figures, column, "Study/Columns");
+          std::set<std::string> taken(study_counts.begin(), study_counts.end());
+          taken.insert({"status", "exit_code", "wall_seconds"});
+          for (const auto &list : spec.lists)
+            taken.insert({list.name, list.name + "_size"});
+          for (const auto &figure : figures)
+            if (taken.count(figure) > 0)
+              throw InputError("",
+                               "found a probe or reaction '" + figure +
+                                 "', which is taken by a column of study.csv");
           return file->resolved({"Study"});
         }
       catch (const InputError &error)
@@ -223,7 +231,7 @@ namespace impm
                                "' of the study sets this entry");
     std::vector<std::string> parameters;
     for (const auto &run : runs)
-      parameters.push_back(resolve(line, run, spec.columns));
+      parameters.push_back(resolve(line, run, spec));
     if (line.check)
       {
         for (const auto &run : runs)

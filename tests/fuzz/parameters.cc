@@ -23,9 +23,9 @@ namespace
     try
       {
         if (scene_dimension(file.handler()) == 3)
-          read_scene<3>(file.handler(), name);
+          read_scene<3>(file.handler());
         else
-          read_scene<2>(file.handler(), name);
+          read_scene<2>(file.handler());
         if (!chosen_in(file.handler())("Study/Lists", "").empty())
           expand(read_study(file.handler()));
       }

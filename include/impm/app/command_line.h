@@ -17,9 +17,10 @@ namespace impm
     };
 
     std::string              answer; ///< to --help and the like; nothing is run
-    bool                     check     = false; ///< but do not run
-    bool                     study     = false; ///< of the Study section
-    bool                     restart   = false; ///< from the last checkpoint
+    bool                     check   = false; ///< but do not run
+    bool                     study   = false; ///< of the Study section
+    bool                     restart = false; ///< from the last checkpoint
+    std::string              listing; ///< of parameters: its form, or empty
     Verbosity                verbosity = Verbosity::normal;
     std::string              parameter_file;
     std::string              output_directory; ///< empty: the file's own

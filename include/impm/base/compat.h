@@ -10,17 +10,6 @@
  */
 namespace impm::compat
 {
-  /** What ParameterHandler says of a subsection that is not declared, after
-   * "Line <...> of file <": a regular expression for the file and the
-   * subsection, before which its path may stand. */
-  inline const char *const no_subsection =
-#if DEAL_II_VERSION_GTE(9, 6, 0)
-    "(.*)>: You are trying to enter a subsection '(?:.*\\.)?(.*)', but the "
-    "ParameterHandler object does not know of any such subsection\\.";
-#else
-    "(.*?)>?: There is no such subsection to be entered: (?:.*\\.)?(.*)";
-#endif
-
   inline dealii::AffineConstraints<double>
   make_constraints([[maybe_unused]] const dealii::IndexSet &owned,
                    const dealii::IndexSet                  &relevant)

@@ -31,7 +31,14 @@ namespace impm
    */
   struct ComputationError : std::runtime_error
   {
-    using std::runtime_error::runtime_error;
+    explicit ComputationError(const std::string &message,
+                              const std::string &entry = "")
+      : std::runtime_error(message)
+      , entry(entry)
+    {}
+
+    /** To blame, as in InputError, or empty. */
+    const std::string entry;
   };
 
   /** A signal has asked the run to stop, and it is saved: exit code 128 + the

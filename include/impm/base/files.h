@@ -11,16 +11,6 @@ namespace impm
   content_of(const std::string &file_name);
 
   /**
-   * The path of a file that a parameter file names: beside that file, or else
-   * beside the scene of its study (`scene`, a path from there, or empty), if it
-   * is there, or else in the working directory.
-   */
-  std::string
-  find_file(const std::string &name,
-            const std::string &parameter_file,
-            const std::string &scene);
-
-  /**
    * Writes a file under another name and moves it there, so that a crash
    * leaves the one before. Throws SystemError. Not collective.
    */

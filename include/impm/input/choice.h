@@ -5,7 +5,7 @@
 #include <deal.II/base/patterns.h>
 
 #include <impm/base/names.h>
-#include <impm/input/parameter_file.h>
+#include <impm/input/parameter_entries.h>
 
 #include <stdexcept>
 #include <string>
@@ -46,7 +46,7 @@ namespace impm
 
     /** What is chosen in a section ("Output/probe"), or else the default. */
     Value
-    read(const ParameterFile::Chosen &chosen, const std::string &section) const
+    read(const Chosen &chosen, const std::string &section) const
     {
       const std::string name = chosen(section + "/" + entry, "");
       for (const auto &option : options)
@@ -66,22 +66,12 @@ namespace impm
 
     /** Whether the value is chosen in a section. */
     bool
-    is(const ParameterFile::Chosen &chosen,
-       const std::string           &section,
-       const Value                  value) const
+    is(const Chosen      &chosen,
+       const std::string &section,
+       const Value        value) const
     {
       return chosen(section + "/" + entry, options.front().name) ==
              name_of(value);
-    }
-
-    /** The same, or where "any" stands for all of them. */
-    bool
-    may_be(const ParameterFile::Chosen &chosen,
-           const std::string           &section,
-           const Value                  value) const
-    {
-      return is(chosen, section, value) ||
-             chosen(section + "/" + entry, "") == "any";
     }
 
   private:

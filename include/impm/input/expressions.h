@@ -2,18 +2,14 @@
 #define impm_input_expressions_h
 
 #include <deal.II/base/function_parser.h>
+#include <deal.II/base/mpi.h>
 #include <deal.II/base/parameter_handler.h>
-#include <deal.II/base/utilities.h>
-
-#include <deal.II/lac/vector.h>
 
 #include <impm/base/exceptions.h>
 
-#include <iostream>
 #include <map>
 #include <memory>
-#include <regex>
-#include <sstream>
+#include <optional>
 #include <string>
 
 namespace impm
@@ -22,93 +18,55 @@ namespace impm
    * Reads an entry with expressions between semicolons, in x, y, z (or in t
    * alone when n_variables = 1), in t if wanted, and in named constants. Null
    * when the entry is empty. Throws InputError with the entry's bare name for
-   * a wrong number of expressions or one that cannot be evaluated. With `held`,
-   * the word `free` may stand for one, which is 0 then, and not held.
+   * a wrong number of expressions, one that cannot be evaluated, or a constant
+   * that is not finite. With `held`, the word `free` may stand for one, which
+   * is 0 then, and not held. Values that are not finite are remembered, see
+   * find_flaw().
    */
   template <int n_variables>
   std::shared_ptr<dealii::FunctionParser<n_variables>>
   read_expressions(const dealii::ParameterHandler      &prm,
                    const std::string                   &entry,
-                   const unsigned int                   n_components,
-                   const bool                           with_time,
+                   unsigned int                         n_components,
+                   bool                                 with_time,
                    const std::map<std::string, double> &constants,
-                   bool                                *held = nullptr)
+                   bool                                *held = nullptr);
+
+  /**
+   * The first value of any expression since this was asked last that is not
+   * finite, on the first rank that has one: as an error that blames the entry.
+   * It is not thrown where it arises, since that may be on one rank alone.
+   * Collective.
+   */
+  std::optional<InputError>
+  find_flaw(MPI_Comm communicator);
+
+  /** What other scenes have left. */
+  void
+  forget_flaw();
+
+  /** While it lives, values that are not finite do not count: a guess where a
+   * function may be evaluated. */
+  class ExpressionTrial
   {
-    using Parser           = dealii::FunctionParser<n_variables>;
-    const std::string text = prm.get(entry);
-    if (text.empty())
-      return nullptr;
-    auto expressions = dealii::Utilities::split_string_list(text, ';');
-    if (expressions.size() != n_components)
-      throw InputError(entry,
-                       "found '" + text + "', allowed " +
-                         (n_components == 1 ?
-                            "is one expression" :
-                            "are " + std::to_string(n_components) +
-                              " expressions between semicolons"));
+  public:
+    ExpressionTrial();
+    ~ExpressionTrial();
 
-    for (unsigned int c = 0; held != nullptr && c < n_components; ++c)
-      if (expressions[c] == "free")
-        {
-          held[c]        = false;
-          expressions[c] = "0";
-        }
+    ExpressionTrial(const ExpressionTrial &) = delete;
+    ExpressionTrial &
+    operator=(const ExpressionTrial &) = delete;
 
-    const std::string variables =
-      n_variables == 1 ?
-        "t" :
-        Parser::default_variable_names() + (with_time ? ",t" : "");
-    const auto function = std::make_shared<Parser>(n_components);
-
-    // deal.II also prints muParser's message before it throws: report it once.
-    std::ostringstream printed, flaw;
-    const auto         screen = std::cerr.rdbuf(printed.rdbuf());
-    try
-      {
-        function->initialize(variables,
-                             expressions,
-                             constants,
-                             with_time && n_variables > 1);
-        // muParser compiles at the first use, which may be on another day.
-        dealii::Vector<double> value(n_components);
-        function->vector_value(dealii::Point<n_variables>(), value);
-      }
-    catch (const dealii::ExceptionBase &exception)
-      {
-        exception.print_info(flaw);
-      }
-    catch (...)
-      {
-        // muParser's own exceptions know no base class, and this is the one
-        // place where deal.II lets them through.
-        flaw << "a constant has a name that cannot stand in expressions";
-      }
-    std::cerr.rdbuf(screen);
-
-    // Around muParser's message, deal.II calls the error's number a column.
-    const auto said =
-      dealii::Utilities::split_string_list(flaw.str(), "said: ");
-    if (!said.empty())
-      throw InputError(entry,
-                       "found '" + text + "', allowed are expressions in " +
-                         variables + " and the constants: " +
-                         dealii::Utilities::trim(said.back()));
-    return function;
-  }
+  private:
+    const bool was_on;
+  };
 
   /** Whether any of the expressions of a function names one of these words: a
    * function that names no place has one value everywhere. */
   template <int n_variables>
   bool
   names_any_of(const dealii::FunctionParser<n_variables> &function,
-               const std::string                         &words)
-  {
-    const std::regex word("\\b(" + words + ")\\b");
-    for (const auto &expression : function.get_expressions())
-      if (std::regex_search(expression, word))
-        return true;
-    return false;
-  }
+               const std::string                         &words);
 
   /** Whether it has one value everywhere. */
   template <int n_variables>

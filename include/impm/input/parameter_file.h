@@ -4,6 +4,8 @@
 #include <deal.II/base/parameter_handler.h>
 
 #include <impm/base/exceptions.h>
+#include <impm/input/parameter_entries.h>
+#include <impm/input/parameter_text.h>
 
 #include <functional>
 #include <memory>
@@ -15,32 +17,22 @@ namespace impm
   /**
    * A parameter file whose entries depend on what it chooses.
    *
-   * Only what a choice can use is declared: a law that knows no hardening
-   * has no entry for it, and a file that sets one is told so, with the line.
-   * Since ParameterHandler wants every entry declared before it reads, the
-   * file is read a few times: `declare` is asked again with the choices that
-   * the reading before has found, until the last reading is strict.
+   * Only what a choice can use is declared. An entry that another choice would
+   * use does nothing, and there is a warning, so that a file may hold what its
+   * studies compare; one that no choice knows is refused.
    */
   class ParameterFile
   {
   public:
-    /**
-     * The value of an entry ("Materials/steel/Law") as far as it is known, or
-     * the fallback.
-     */
-    using Chosen = std::function<std::string(const std::string &path,
-                                             const std::string &fallback)>;
-
     /**
      * Reads the scene that the entry Study/Scene of `file_name` names (a path
      * from there), if it does, then `file_name`, then the overrides
      * ("Section/Sub/Name=value"). Throws InputError, whose message has file,
      * line, entry, what was found and what is allowed.
      */
-    ParameterFile(const std::string                               &file_name,
-                  const std::vector<std::string>                  &overrides,
-                  const std::function<void(dealii::ParameterHandler &prm,
-                                           const Chosen &chosen)> &declare);
+    ParameterFile(const std::string              &file_name,
+                  const std::vector<std::string> &overrides,
+                  const DeclareEntries           &declare);
 
     dealii::ParameterHandler &
     handler()
@@ -60,38 +52,46 @@ namespace impm
     std::string
     describe(const InputError &error) const;
 
-    /**
-     * Entries that are set but do nothing under the choices of this scene;
-     * they would under another method, so that a study may compare them.
-     */
+    /** Entries that do nothing under the choices of this scene. */
     std::vector<std::string> warnings;
 
   private:
     void
     read_scene_of_study();
 
-    /** Takes out of the sources what only `others` declares, with warnings. */
+    /** Sets the entry of a line that is declared. */
     void
-    drop_idle_entries(const dealii::ParameterHandler &others);
+    set(const ParameterLine &line, const std::string &pattern);
 
-    struct Source
-    {
-      std::string name; ///< of a file, or "--set ..."
-      std::string text;
-    };
+    /** Warns of lines that other choices would use, refuses others. */
+    void
+    judge(const ParameterLines              &idle,
+          const EntryValues                 &values,
+          const std::vector<ParameterEntry> &declared,
+          const DeclareEntries              &declare);
 
     const std::string                         file_name;
-    std::vector<Source>                       sources; ///< the last one wins
+    ParameterLines                            lines; ///< the last one wins
     std::unique_ptr<dealii::ParameterHandler> prm;
   };
 
   /** What the entries of a handler, which stands at the top, say. */
-  ParameterFile::Chosen
+  Chosen
   chosen_in(dealii::ParameterHandler &prm);
 
   /** Splits "a, b ,c" and drops what is empty. */
   std::vector<std::string>
   split_names(const std::string &list);
+
+  /** The names in a list ("Output/Probes") but those whose subsection says
+   * 'Enabled = false'. */
+  std::vector<std::string>
+  names_in(const Chosen &chosen, const std::string &list);
+
+  /** Whether a section cannot have this name, since '/' stands between names.
+   */
+  bool
+  is_path(const std::string &name);
 
   /**
    * Runs `action` inside a subsection ("A/B") and comes back to where it was.
@@ -101,6 +101,10 @@ namespace impm
   in_section(dealii::ParameterHandler    &prm,
              const std::string           &path,
              const std::function<void()> &action);
+
+  /** The path of the section in which an action runs: "A/B/", or "". */
+  std::string
+  current_section();
 
   /** Declares an entry that may hold anything and is empty by default. */
   void

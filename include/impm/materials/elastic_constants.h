@@ -32,8 +32,7 @@ namespace impm
     }
 
     static void
-    declare_parameters(dealii::ParameterHandler &prm,
-                       const ParameterFile::Chosen &)
+    declare_parameters(dealii::ParameterHandler &prm, const Chosen &)
     {
       prm.declare_entry("Young's modulus",
                         "1e9",
@@ -94,8 +93,7 @@ namespace impm
   struct ElasticPair
   {
     static void
-    declare_parameters(dealii::ParameterHandler    &prm,
-                       const ParameterFile::Chosen &chosen)
+    declare_parameters(dealii::ParameterHandler &prm, const Chosen &chosen)
     {
       const std::string moduli = "shear and bulk modulus";
       prm.declare_entry("Constants from",
@@ -103,11 +101,10 @@ namespace impm
                         dealii::Patterns::Selection(engineering +
                                                     ("|" + moduli)),
                         "Which pair of elastic constants is given.");
-      // it may be "any"
       const std::string pair = chosen("Constants from", engineering);
       if (pair != moduli)
         ElasticConstants::declare_parameters(prm, chosen);
-      if (pair != engineering)
+      else
         for (const auto &[name, value] :
              {std::make_pair("Shear modulus", "4e8"),
               std::make_pair("Bulk modulus", "1e9")})

@@ -22,9 +22,7 @@ namespace impm
      * Declares the entries of this law, and no others. What some of them say,
      * by their bare names in `chosen`, decides on others.
      */
-    std::function<void(dealii::ParameterHandler &,
-                       const ParameterFile::Chosen &)>
-      declare;
+    std::function<void(dealii::ParameterHandler &, const Chosen &)> declare;
 
     /**
      * Reads them back and makes the law, which adds its fields to the

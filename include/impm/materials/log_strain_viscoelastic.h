@@ -53,8 +53,7 @@ namespace impm
     struct Parameters
     {
       static void
-      declare_parameters(dealii::ParameterHandler    &prm,
-                         const ParameterFile::Chosen &chosen)
+      declare_parameters(dealii::ParameterHandler &prm, const Chosen &chosen)
       {
         ElasticConstants::declare_parameters(prm, chosen);
         const dealii::Patterns::Double positive(1e-300);

@@ -31,8 +31,7 @@ namespace impm
     struct Parameters
     {
       static void
-      declare_parameters(dealii::ParameterHandler &prm,
-                         const ParameterFile::Chosen &)
+      declare_parameters(dealii::ParameterHandler &prm, const Chosen &)
       {
         prm.declare_entry("Bulk modulus",
                           "2e9",

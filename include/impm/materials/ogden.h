@@ -33,8 +33,7 @@ namespace impm
     struct Parameters
     {
       static void
-      declare_parameters(dealii::ParameterHandler &prm,
-                         const ParameterFile::Chosen &)
+      declare_parameters(dealii::ParameterHandler &prm, const Chosen &)
       {
         declare_number_list(prm,
                             "Ogden moduli",
@@ -208,8 +207,7 @@ namespace impm
   struct MooneyRivlin
   {
     static void
-    declare_parameters(dealii::ParameterHandler &prm,
-                       const ParameterFile::Chosen &)
+    declare_parameters(dealii::ParameterHandler &prm, const Chosen &)
     {
       prm.declare_entry("C10",
                         "2e5",

@@ -20,8 +20,7 @@ namespace impm
   struct OrthotropicConstants
   {
     static void
-    declare_parameters(dealii::ParameterHandler &prm,
-                       const ParameterFile::Chosen &);
+    declare_parameters(dealii::ParameterHandler &prm, const Chosen &);
 
     /** Throws InputError where the stiffness is not positive definite, or two
      * axes are parallel. */

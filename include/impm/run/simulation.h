@@ -206,6 +206,11 @@ namespace impm
     void
     write_row();
 
+    /** Throws ComputationError if an expression had a value that is not finite.
+     * Collective. */
+    void
+    check_expressions() const;
+
     void
     picture(bool grid_has_increment);
 

@@ -50,21 +50,16 @@ namespace impm
 
   /** Declares every entry that the choices so far can use. */
   void
-  declare_scene(dealii::ParameterHandler    &prm,
-                const ParameterFile::Chosen &chosen);
+  declare_scene(dealii::ParameterHandler &prm, const Chosen &chosen);
 
   /** 2 or 3, from the chosen geometry. */
   int
   scene_dimension(dealii::ParameterHandler &prm);
 
-  /**
-   * Reads the scene and checks what no single entry can tell. Curves of
-   * references and meshes of shapes may lie beside the parameter file.
-   */
+  /** Reads the scene and checks what no single entry can tell. */
   template <int dim>
   Scene<dim>
-  read_scene(dealii::ParameterHandler &prm,
-             const std::string        &parameter_file = "");
+  read_scene(dealii::ParameterHandler &prm);
 
   /** Decides which fields the points of a scene carry. */
   template <int dim>

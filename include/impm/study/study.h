@@ -78,8 +78,7 @@ namespace impm
 
   /** Everything that a parameter file may hold: scene and study. */
   void
-  declare_file(dealii::ParameterHandler    &prm,
-               const ParameterFile::Chosen &chosen);
+  declare_file(dealii::ParameterHandler &prm, const Chosen &chosen);
 
   /** Throws InputError when the lists do not fit each other. */
   StudySpec

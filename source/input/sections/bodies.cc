@@ -119,7 +119,7 @@ namespace impm
       if (body.meets_surfaces && is_from_file)
         section.refuse("Points from",
                        "allowed with 'Contact = surface' is 'shape'");
-      if (section.may_be(from_file, false))
+      if (section.chooses(from_file, false))
         {
           body.shape = add_name(section,
                                 "Shape",
@@ -138,10 +138,11 @@ namespace impm
           if (body.shape)
             check_place(section, *body.shape, grid);
         }
-      if (section.may_be(from_file, true))
+      if (section.chooses(from_file, true))
         section.add("File",
                     body.point_file,
-                    "CSV (x, y, z, volume) or VTU file of the points.");
+                    "CSV (x, y, z, volume) or VTU file of the points; a path "
+                    "from the file that sets it.");
     }
 
     /** Whether points split where they thin out. The papers' method does not.

@@ -206,6 +206,7 @@ namespace impm
         return false;
       const double end = dealii::Utilities::string_to_double(
         section.chosen("Time/End time", ""));
+      const ExpressionTrial trial; // where material need not be
       const unsigned int component = face.value->n_components == 1 ? 0 : normal;
       const unsigned int n_times   = 16;
       std::array<unsigned int, dim> n_steps;

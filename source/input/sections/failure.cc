@@ -30,12 +30,12 @@ namespace impm
                 "and temperature.");
     FailureSpec failure{};
     auto       &strain = failure.strain;
-    if (section.may_be(kinds, Kind::plastic_strain))
+    if (section.chooses(kinds, Kind::plastic_strain))
       section.add("Failure strain",
                   strain.d1,
                   {"1", FailureStrain::smallest},
                   "Equivalent plastic strain at which a point fails.");
-    if (section.may_be(kinds, Kind::johnson_cook))
+    if (section.chooses(kinds, Kind::johnson_cook))
       {
         const auto d =
           section.numbers("Failure constants",

@@ -1,6 +1,5 @@
 #include <deal.II/base/utilities.h>
 
-#include <impm/input/parameter_messages.h>
 #include <impm/input/sections/general.h>
 
 namespace impm

@@ -1,7 +1,4 @@
-#include <impm/base/files.h>
 #include <impm/input/sections/geometry.h>
-
-#include <filesystem>
 
 namespace impm
 {
@@ -16,23 +13,20 @@ namespace impm
   }
 
   bool
-  is_three_d(const ParameterFile::Chosen &chosen)
+  is_three_d(const Chosen &chosen)
   {
     return kinds.read(chosen, "Geometry") == GeometryKind::three_d;
   }
 
   bool
-  is_axisymmetric(const ParameterFile::Chosen &chosen)
+  is_axisymmetric(const Chosen &chosen)
   {
     return kinds.read(chosen, "Geometry") == GeometryKind::axisymmetric;
   }
 
   template <int dim>
   void
-  add_geometry(const Section     &top,
-               GeometryKind      &kind,
-               NamedShapes<dim>  &shapes,
-               const std::string &parameter_file)
+  add_geometry(const Section &top, GeometryKind &kind, NamedShapes<dim> &shapes)
   {
     const auto section = top.subsection("Geometry");
     section.add(kinds,
@@ -48,18 +42,7 @@ namespace impm
         const auto  shape = section.subsection(name);
         const auto &entry =
           shape.pick("Kind", shape_list<dim>(), "What the shape is.");
-        // An absolute path, so that the resolved parameters find it, and a
-        // restart compares it, from anywhere.
-        std::string file = shape.get("File");
-        if (!file.empty())
-          file =
-            std::filesystem::absolute(
-              find_file(file, parameter_file, shape.chosen("Study/Scene", "")))
-              .lexically_normal()
-              .string();
         shape.inside([&](auto &prm) {
-          if (shape.is_read && !file.empty())
-            prm.set("File", file);
           if (shape.is_read)
             shapes[name] = std::make_shared<const Shape<dim>>(
               entry.create(prm, shape.constants, shapes));
@@ -70,13 +53,7 @@ namespace impm
   }
 
   template void
-  add_geometry(const Section &,
-               GeometryKind &,
-               NamedShapes<2> &,
-               const std::string &);
+  add_geometry(const Section &, GeometryKind &, NamedShapes<2> &);
   template void
-  add_geometry(const Section &,
-               GeometryKind &,
-               NamedShapes<3> &,
-               const std::string &);
+  add_geometry(const Section &, GeometryKind &, NamedShapes<3> &);
 } // namespace impm

@@ -26,15 +26,14 @@ namespace impm
                   "bodies neither meet nor part, points do not split, the "
                   "grid does not adapt. With FLIP, velocities lose the more at "
                   "a reset the rarer it is; with APIC they do not.");
-      if (section.may_be(resets, GridReset::every_step) &&
-          section.get("Reset") != "any")
+      if (grid.reset == GridReset::every_step)
         return;
-      if (section.may_be(resets, GridReset::interval))
+      if (section.chooses(resets, GridReset::interval))
         section.add("Steps between resets",
                     grid.reset_interval,
                     {"10", 1},
                     "Number of steps from one reset to the next.");
-      if (section.may_be(resets, GridReset::distortion))
+      if (section.chooses(resets, GridReset::distortion))
         section.add("Largest distortion",
                     grid.reset_distortion,
                     {"0.1", 1e-6, 10},
@@ -106,14 +105,15 @@ namespace impm
                 "next cell. MPM: a place. Lagrangian: a Gauss "
                 "point of a grid that fits the bodies and goes with "
                 "them, that is, finite elements.");
-    if (section.may_be(methods, GridMethod::lagrangian))
+    if (section.chooses(methods, GridMethod::lagrangian))
       section.add("Map",
                   grid.map,
                   {dim, steady},
-                  "Where a place x, y, z of the domain really is (m): "
-                  "one expression for each direction, between "
-                  "semicolons; empty: there.");
-    if (section.may_be(methods, GridMethod::gimp))
+                  "Where a place x, y, z of the box between the corners is "
+                  "at the start (m): one expression for each direction, "
+                  "between semicolons; empty: there. All other entries speak "
+                  "of places after the map; faces keep their names.");
+    if (section.chooses(methods, GridMethod::gimp))
       section.add("Boxes",
                   grid.boxes_stretch,
                   {{"stretched", true}, {"fixed", false}},

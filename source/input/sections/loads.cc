@@ -160,14 +160,14 @@ namespace impm
         section.refuse("Acts on",
                        "allowed on a grid that keeps its motion "
                        "('Grid/Reset') is points");
-      if (section.may_be(on_points, true))
+      if (section.chooses(on_points, true))
         {
           TractionSpec<dim> traction;
           add_traction(section, traction, body);
           if (acts_on_points)
             loads.tractions.push_back(traction);
         }
-      if (section.may_be(on_points, false))
+      if (section.chooses(on_points, false))
         {
           SurfaceLoadSpec<dim> load;
           add_surface_load(section, load, bodies, body, geometry);

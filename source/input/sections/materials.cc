@@ -244,9 +244,9 @@ namespace impm
 
     /** Whether a body is made of a material. */
     bool
-    is_used(const std::string &material, const ParameterFile::Chosen &chosen)
+    is_used(const std::string &material, const Chosen &chosen)
     {
-      for (const auto &name : split_names(chosen("Bodies/Names", "")))
+      for (const auto &name : names_in(chosen, "Bodies/Names"))
         if (chosen("Bodies/" + name + "/Kind", "") != "rigid" &&
             chosen("Bodies/" + name + "/Material", "") == material)
           return true;

@@ -10,11 +10,11 @@ namespace impm
   {
     /** Whether a picture, a probe or a reference has photoelastic fringes. */
     bool
-    shows_fringes(const ParameterFile::Chosen &chosen)
+    shows_fringes(const Chosen &chosen)
     {
       auto fields = split_names(chosen("Output/Point fields", ""));
       for (const std::string list : {"Output/Probes", "Reference/Names"})
-        for (const auto &name : split_names(chosen(list, "")))
+        for (const auto &name : names_in(chosen, list))
           fields.push_back(
             chosen(list.substr(0, list.find('/') + 1) + name + "/Field", ""));
       return std::count(fields.begin(), fields.end(), "photoelastic_fringe") >
@@ -212,7 +212,10 @@ namespace impm
           check_field(section, "Field", probe.field, dim);
         }
       add_component<dim>(section, has_field, probe);
-      section.add("Factor", probe.factor, {"1"}, "Multiplies the figure.");
+      section.add("Factor",
+                  probe.factor,
+                  {"1"},
+                  "Multiplies the figure: any number.");
     }
 
     template <int dim>
@@ -259,7 +262,7 @@ namespace impm
               section.add("Factor",
                           reaction.factor,
                           {"1"},
-                          "Multiplies the figure.");
+                          "Multiplies the figure: any number.");
               return;
             }
         }
@@ -272,7 +275,10 @@ namespace impm
                       reaction.direction.end(),
                       [](const double value) { return value == 0; }))
         section.refuse("Direction", "allowed is a vector that is not zero");
-      section.add("Factor", reaction.factor, {"1"}, "Multiplies the figure.");
+      section.add("Factor",
+                  reaction.factor,
+                  {"1"},
+                  "Multiplies the figure: any number.");
     }
   } // namespace
 

@@ -123,7 +123,8 @@ namespace impm
       section.add("File",
                   text,
                   "CSV file of the curve with a header line: columns called "
-                  "as 'Against' and 'Column', or just two.");
+                  "as 'Against' and 'Column', or just two; a path from the "
+                  "file that sets it.");
       section.add("Points",
                   text,
                   "The curve in place of a file: 'x1 y1; x2 y2'.");
@@ -146,15 +147,9 @@ namespace impm
     /** Unless it is an expression. */
     template <int dim>
     void
-    read_curve(dealii::ParameterHandler &prm,
-               const std::string        &parameter_file,
-               const std::string        &scene,
-               ReferenceSpec<dim>       &spec)
+    read_curve(const dealii::ParameterHandler &prm, ReferenceSpec<dim> &spec)
     {
       const bool from_file = !prm.get("File").empty();
-      // So that the resolved parameters find it from here, too.
-      if (from_file)
-        prm.set("File", find_file(prm.get("File"), parameter_file, scene));
       const auto points =
         from_file ?
           read_file(prm.get("File"), spec.against, spec.columns.front()) :
@@ -216,9 +211,7 @@ namespace impm
 
     template <int dim>
     void
-    add_reference(const Section      &section,
-                  ReferenceSpec<dim> &spec,
-                  const std::string  &parameter_file)
+    add_reference(const Section &section, ReferenceSpec<dim> &spec)
     {
       spec.name = section.name;
       section.add("Kind",
@@ -244,10 +237,8 @@ namespace impm
                     spec.against,
                     "The column of the history that is the abscissa.",
                     "time");
-      const auto scene = section.chosen("Study/Scene", "");
       if (section.is_read && spec.kind == ReferenceKind::curve && !spec.value)
-        section.inside(
-          [&](auto &prm) { read_curve(prm, parameter_file, scene, spec); });
+        section.inside([&](auto &prm) { read_curve(prm, spec); });
       if (spec.kind != ReferenceKind::probe)
         section.add(norms,
                     spec.norm,
@@ -266,25 +257,18 @@ namespace impm
   template <int dim>
   void
   add_references(const Section                   &top,
-                 std::vector<ReferenceSpec<dim>> &references,
-                 const std::string               &parameter_file)
+                 std::vector<ReferenceSpec<dim>> &references)
   {
     const auto section = top.subsection("Reference");
     for (const auto &name :
          section.names("Names",
                        "Names of what the scene should give, each with a "
                        "subsection; the errors stand in summary.json."))
-      add_reference(section.subsection(name),
-                    references.emplace_back(),
-                    parameter_file);
+      add_reference(section.subsection(name), references.emplace_back());
   }
 
   template void
-  add_references(const Section &,
-                 std::vector<ReferenceSpec<2>> &,
-                 const std::string &);
+  add_references(const Section &, std::vector<ReferenceSpec<2>> &);
   template void
-  add_references(const Section &,
-                 std::vector<ReferenceSpec<3>> &,
-                 const std::string &);
+  add_references(const Section &, std::vector<ReferenceSpec<3>> &);
 } // namespace impm

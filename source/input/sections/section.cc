@@ -1,4 +1,3 @@
-#include <impm/input/parameter_messages.h>
 #include <impm/input/sections/section.h>
 
 #include <set>
@@ -25,7 +24,7 @@ namespace impm
       inside([&](auto &prm) {
         prm.declare_entry(entry, fallback, pattern, documentation);
       });
-    const std::string found = get(entry);
+    const std::string found = chosen(path + "/" + entry, fallback);
     return pattern.match(found) ? found : fallback;
   }
 
@@ -69,8 +68,19 @@ namespace impm
                "for paths of entries");
       else if (!taken.insert(name).second)
         fail(entry, "found '" + name + "' twice, the name is taken already");
-    names.erase(std::remove_if(names.begin(), names.end(), is_path),
-                names.end());
-    return names;
+    std::vector<std::string> enabled;
+    for (const auto &name : names)
+      if (!is_path(name))
+        {
+          bool is_enabled = true;
+          subsection(name).add("Enabled",
+                               is_enabled,
+                               true,
+                               "Whether it counts; false: as if the list did "
+                               "not name it.");
+          if (is_enabled)
+            enabled.push_back(name);
+        }
+    return enabled;
   }
 } // namespace impm

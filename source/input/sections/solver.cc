@@ -36,7 +36,7 @@ namespace impm
                   "BFGS corrects a tangent that is kept by what later "
                   "iterations show (Matthies & Strang 1979), instead of "
                   "taking a new one in each.");
-      if (section.may_be(bfgs, true))
+      if (section.chooses(bfgs, true))
         section.add("BFGS updates",
                     solver.bfgs_updates,
                     {"10", 1},
@@ -47,7 +47,7 @@ namespace impm
                   "what an iteration changes of the increment, and with it of "
                   "the energy, in both over the most in this step (Guilkey & "
                   "Weiss 2003, eq. 13).");
-      if (section.may_be(convergences, Convergence::increment_and_energy))
+      if (section.chooses(convergences, Convergence::increment_and_energy))
         {
           section.add("Displacement tolerance",
                       solver.displacement_tolerance,
@@ -60,7 +60,7 @@ namespace impm
                       "Product of an iteration's change and residual over "
                       "that of the first iteration.");
         }
-      if (section.may_be(convergences, Convergence::residual))
+      if (section.chooses(convergences, Convergence::residual))
         {
           section.add("Residual scale",
                       solver.residual_scale,
@@ -138,15 +138,15 @@ namespace impm
             "needs the matrix in any case. Difference quotient: of residuals (Sulsky & "
             "Kaul 2004, eq. 2.4.18), one evaluation of all laws "
             "each time.");
-          if (section.may_be(tangents, TangentKind::difference_quotient))
+          if (section.chooses(tangents, TangentKind::difference_quotient))
             section.add("Difference step",
                         solver.difference_step,
                         {"1e-5", 1e-12, 0.1},
                         "h of the difference quotient, relative to the norm "
                         "of the increment.");
         }
-      if (section.may_be(linear_solvers, LinearSolverKind::automatic) ||
-          section.may_be(linear_solvers, LinearSolverKind::gmres))
+      if (section.chooses(linear_solvers, LinearSolverKind::automatic) ||
+          section.chooses(linear_solvers, LinearSolverKind::gmres))
         section.add("GMRES directions",
                     solver.gmres_directions,
                     {"50", 2},

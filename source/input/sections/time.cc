@@ -26,33 +26,34 @@ namespace impm
                   "damps what steps do not resolve. Energy-momentum: Simo & "
                   "Tarnow (1992), for bodies that turn; its matrix is "
                   "unsymmetric.");
-      if (section.may_be(integrators, Integrator::newmark))
+      if (section.chooses(integrators, Integrator::newmark))
         {
           section.add("Beta",
                       time.beta,
                       {"0.25", 0.01, 0.5},
                       "Weight of the acceleration at the end in the "
                       "displacement; 0.25: trapezoidal.");
-          section.add("Gamma",
-                      time.gamma,
-                      {"0.5", 0.5, 1},
-                      "The same in the velocity; above 0.5 it damps.");
+          section.add(
+            "Gamma",
+            time.gamma,
+            {"0.5", 0.5, 1},
+            "Weight of the same in the velocity; above 0.5 it damps.");
         }
-      if (section.may_be(integrators, Integrator::generalised_alpha))
+      if (section.chooses(integrators, Integrator::generalised_alpha))
         section.add("Spectral radius",
                     time.spectral_radius,
                     {"0.8", 0, 1},
                     "What a step leaves of what it does not resolve; 1: all "
                     "of it.");
-      if (section.may_be(integrators, Integrator::newmark) ||
-          section.may_be(integrators, Integrator::generalised_alpha))
+      if (section.chooses(integrators, Integrator::newmark) ||
+          section.chooses(integrators, Integrator::generalised_alpha))
         section.add("Acceleration from",
                     time.keeps_acceleration,
                     {{"grid", false}, {"points", true}},
                     "At the start of a step: from the forces on the grid as "
                     "it is, or as the points carry it (Guilkey & Weiss "
                     "2003), which loses energy in long steps.");
-      if (section.may_be(integrators, Integrator::theta))
+      if (section.chooses(integrators, Integrator::theta))
         section.add("Theta",
                     time.theta,
                     {"1", 0, 1},
@@ -181,7 +182,7 @@ namespace impm
   } // namespace
 
   bool
-  is_quasi_static(const ParameterFile::Chosen &chosen)
+  is_quasi_static(const Chosen &chosen)
   {
     return integrators.is(chosen, "Time", Integrator::quasi_static);
   }

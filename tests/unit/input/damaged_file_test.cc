@@ -1,5 +1,4 @@
 #include <impm/base/exceptions.h>
-#include <impm/input/parameter_messages.h>
 
 #include <gtest/gtest.h>
 

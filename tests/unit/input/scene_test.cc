@@ -199,7 +199,6 @@ TEST(Scene, ValuesThatCannotBe)
                {"found ''", "expression"});
   // outside what the pattern of the entry allows: with the line
   expect_blame({"Grid/Cells=0, 4"}, "", {"Cells"});
-  expect_blame({"Grid/Refine where=x"}, "", {"Refine where"}); // unrefined
 }
 
 

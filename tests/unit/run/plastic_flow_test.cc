@@ -33,7 +33,7 @@ namespace
                           "Time/Largest number of steps=" +
                             std::to_string(n_steps)},
                          declare_file);
-      Simulation<2> simulation(read_scene<2>(file.handler(), path),
+      Simulation<2> simulation(read_scene<2>(file.handler()),
                                CommandLine::Verbosity::quiet,
                                MPI_COMM_WORLD);
       simulation.run(directory, "test", "", {}, restart);
@@ -111,7 +111,7 @@ TEST(PlasticFlowMpi, SofteningIsTold)
       for (const std::string name : {"steel", "weak"})
         overrides.push_back("Materials/" + name + "/" + hardening);
       ParameterFile file(path, overrides, declare_file);
-      Simulation<2> simulation(read_scene<2>(file.handler(), path),
+      Simulation<2> simulation(read_scene<2>(file.handler()),
                                CommandLine::Verbosity::quiet,
                                MPI_COMM_WORLD);
       simulation.run(directory, "test", "", {}, restart);

@@ -23,7 +23,7 @@ namespace
     all.push_back("Output/Pictures=false");
     const std::string path = std::string(IMPM_SCENES) + "/" + name + ".prm";
     ParameterFile     file(path, all, declare_file);
-    const auto        scene = read_scene<dim>(file.handler(), path);
+    const auto        scene = read_scene<dim>(file.handler());
     const auto        id =
       dealii::Utilities::MPI::broadcast(MPI_COMM_WORLD,
                                         static_cast<int>(getpid()));

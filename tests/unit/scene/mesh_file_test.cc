@@ -344,17 +344,3 @@ TEST(MeshFile, ScaleIsPositive)
         EXPECT_EQ(error.entry, "Scale");
       }
 }
-
-TEST(MeshFile, IsLookedForBesideTheFileThatNamesIt)
-{
-  const MeshFile    file(square.msh(), ".msh");
-  const auto        slash  = file.name.rfind('/');
-  const std::string folder = file.name.substr(0, slash + 1);
-  const std::string name   = file.name.substr(slash + 1);
-  EXPECT_EQ(find_file(name, folder + "scene.prm", ""), folder + name);
-  EXPECT_EQ(find_file(name, folder + "studies/study.prm", "../scene.prm"),
-            folder + name);
-  EXPECT_EQ(find_file(name, folder + "studies/study.prm", ""), name);
-  EXPECT_EQ(find_file(file.name, "elsewhere/scene.prm", ""), file.name);
-  EXPECT_EQ(find_file("nowhere", "scene.prm", ""), "nowhere");
-}

@@ -22,7 +22,7 @@ namespace
     const int           id =
       dealii::Utilities::MPI::broadcast(MPI_COMM_WORLD,
                                         static_cast<int>(getpid()));
-    return run(impm::read_scene<dim>(file.handler(), path),
+    return run(impm::read_scene<dim>(file.handler()),
                MPI_COMM_WORLD,
                testing::TempDir() + "impm_run_" + std::to_string(id));
   }

@@ -7,20 +7,17 @@
 
 namespace impm
 {
-  /** Meshes of shapes are looked for beside the parameter file, by
-   * find_file(). */
   template <int dim>
   void
-  add_geometry(const Section     &top,
-               GeometryKind      &kind,
-               NamedShapes<dim>  &shapes,
-               const std::string &parameter_file);
+  add_geometry(const Section    &top,
+               GeometryKind     &kind,
+               NamedShapes<dim> &shapes);
 
   bool
-  is_three_d(const ParameterFile::Chosen &chosen);
+  is_three_d(const Chosen &chosen);
 
   bool
-  is_axisymmetric(const ParameterFile::Chosen &chosen);
+  is_axisymmetric(const Chosen &chosen);
 } // namespace impm
 
 #endif

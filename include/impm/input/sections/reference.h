@@ -50,15 +50,12 @@ namespace impm
   const std::string &
   name_of(Norm norm);
 
-  /**
-   * Files are looked for beside the parameter file, by find_file(). What the
-   * points and the history of a scene say is checked by Reference.
+  /** What the points and the history of a scene say is checked by Reference.
    */
   template <int dim>
   void
   add_references(const Section                   &top,
-                 std::vector<ReferenceSpec<dim>> &references,
-                 const std::string               &parameter_file);
+                 std::vector<ReferenceSpec<dim>> &references);
 } // namespace impm
 
 #endif

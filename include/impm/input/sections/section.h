@@ -61,7 +61,7 @@ namespace impm
   {
   public:
     /** The top of a file whose entries are declared... */
-    Section(dealii::ParameterHandler &prm, const ParameterFile::Chosen &chosen)
+    Section(dealii::ParameterHandler &prm, const Chosen &chosen)
       : chosen(chosen)
       , is_read(false)
       , prm(&prm)
@@ -211,7 +211,8 @@ namespace impm
             const std::string           &fallback = "",
             const Patterns::PatternBase &pattern  = Patterns::Anything()) const;
 
-    /** Adds an entry with the names of subsections, all different. */
+    /** Adds an entry with the names of subsections, all different, which may
+     * be switched off: returns the others. */
     std::vector<std::string>
     names(const std::string &entry, const std::string &documentation) const;
 
@@ -230,12 +231,12 @@ namespace impm
       return items[std::find(known.begin(), known.end(), name) - known.begin()];
     }
 
-    /** Whether the value is, or is among those that are, chosen. */
+    /** Whether the value is chosen. */
     template <typename Value>
     bool
-    may_be(const Choice<Value> &choice, const Value value) const
+    chooses(const Choice<Value> &choice, const Value value) const
     {
-      return choice.may_be(chosen, path, value);
+      return choice.is(chosen, path, value);
     }
 
     /** What the file says so far. */
@@ -285,11 +286,11 @@ namespace impm
       in_section(*prm, path, [&]() { action(*prm); });
     }
 
-    std::string           name;
-    std::string           path; ///< "Output/probe"
-    ParameterFile::Chosen chosen;
-    Constants             constants; ///< that expressions may use
-    bool                  is_read;   ///< rather than declared
+    std::string name;
+    std::string path; ///< "Output/probe"
+    Chosen      chosen;
+    Constants   constants; ///< that expressions may use
+    bool        is_read;   ///< rather than declared
 
   private:
     dealii::ParameterHandler *prm;

@@ -73,7 +73,7 @@ namespace impm
 
   /** Whether there is no inertia for sure, before the section is added. */
   bool
-  is_quasi_static(const ParameterFile::Chosen &chosen);
+  is_quasi_static(const Chosen &chosen);
 } // namespace impm
 
 #endif

@@ -28,8 +28,7 @@ namespace impm
     {}
 
     static void
-    declare_parameters(dealii::ParameterHandler    &prm,
-                       const ParameterFile::Chosen &chosen)
+    declare_parameters(dealii::ParameterHandler &prm, const Chosen &chosen)
     {
       LinearHardening::declare_parameters(prm, chosen);
       prm.declare_entry("Limit strain",

@@ -36,8 +36,7 @@ namespace impm
     struct Parameters
     {
       static void
-      declare_parameters(dealii::ParameterHandler    &prm,
-                         const ParameterFile::Chosen &chosen)
+      declare_parameters(dealii::ParameterHandler &prm, const Chosen &chosen)
       {
         LudwikHardening::declare_parameters(prm, chosen);
         prm.declare_entry("Rate coefficient",

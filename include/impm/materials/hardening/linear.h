@@ -16,8 +16,7 @@ namespace impm
     static constexpr const char *name = "linear";
 
     static void
-    declare_parameters(dealii::ParameterHandler &prm,
-                       const ParameterFile::Chosen &)
+    declare_parameters(dealii::ParameterHandler &prm, const Chosen &)
     {
       declare_yield_stress(prm);
       prm.declare_entry("Hardening modulus",

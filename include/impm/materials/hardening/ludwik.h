@@ -19,8 +19,7 @@ namespace impm
     static constexpr const char *name = "Ludwik";
 
     static void
-    declare_parameters(dealii::ParameterHandler &prm,
-                       const ParameterFile::Chosen &)
+    declare_parameters(dealii::ParameterHandler &prm, const Chosen &)
     {
       declare_yield_stress(prm);
       declare_hardening_exponent(prm);

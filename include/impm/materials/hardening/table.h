@@ -23,8 +23,7 @@ namespace impm
     using PiecewiseLinearHardening::PiecewiseLinearHardening;
 
     static void
-    declare_parameters(dealii::ParameterHandler &prm,
-                       const ParameterFile::Chosen &)
+    declare_parameters(dealii::ParameterHandler &prm, const Chosen &)
     {
       prm.declare_entry("Yield stresses",
                         "0 1e6",

@@ -20,8 +20,7 @@ namespace impm
     static constexpr const char *name = "Voce";
 
     static void
-    declare_parameters(dealii::ParameterHandler    &prm,
-                       const ParameterFile::Chosen &chosen)
+    declare_parameters(dealii::ParameterHandler &prm, const Chosen &chosen)
     {
       LinearHardening::declare_parameters(prm, chosen);
       prm.declare_entry("Saturation stress",

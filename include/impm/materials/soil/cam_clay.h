@@ -41,8 +41,7 @@ namespace impm
     struct Parameters
     {
       static void
-      declare_parameters(dealii::ParameterHandler &prm,
-                         const ParameterFile::Chosen &)
+      declare_parameters(dealii::ParameterHandler &prm, const Chosen &)
       {
         const auto add = [&prm](const std::string &name,
                                 const std::string &value,
@@ -65,8 +64,8 @@ namespace impm
             "of the pressure while it is elastic.");
         add("Compression index",
             "0.1",
-            "lambda, greater than the swelling index: the same while the clay "
-            "yields without shear.");
+            "lambda, greater than the swelling index: the same ratio while the "
+            "clay yields without shear.");
         add("Shear modulus", "1e7", "mu (Pa), positive, of elasticity.");
         add("Critical state slope",
             "1",

@@ -32,8 +32,7 @@ namespace impm
   struct DruckerPrager : public SoilStrength
   {
     static void
-    declare_parameters(dealii::ParameterHandler    &prm,
-                       const ParameterFile::Chosen &chosen)
+    declare_parameters(dealii::ParameterHandler &prm, const Chosen &chosen)
     {
       SoilStrength::declare_parameters(prm, chosen);
       prm.declare_entry("Match",

@@ -38,8 +38,7 @@ namespace impm
     struct Parameters
     {
       static void
-      declare_parameters(dealii::ParameterHandler    &prm,
-                         const ParameterFile::Chosen &chosen)
+      declare_parameters(dealii::ParameterHandler &prm, const Chosen &chosen)
       {
         ElasticConstants::declare_parameters(prm, chosen);
         Limit::declare_parameters(prm, chosen);

@@ -20,8 +20,7 @@ namespace impm
   struct SoilStrength
   {
     static void
-    declare_parameters(dealii::ParameterHandler &prm,
-                       const ParameterFile::Chosen &)
+    declare_parameters(dealii::ParameterHandler &prm, const Chosen &)
     {
       using dealii::Patterns::Double;
       prm.declare_entry("Cohesion",

@@ -28,7 +28,7 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 MADE = ("output", "build", "checkpoint", "bin", "share", "parameters.prm", "strip.prm")
 ENDINGS = (".h", ".cc", ".py", ".prm", ".md", ".cmake", ".sh", ".sbatch", ".msh")
 PROGRAMS = set(
-    "cd cmake cp ctest echo export git grep kill make module mpirun mkdir mv paraview rm sbatch"
+    "cd cmake cp ctest echo export git grep kill ls make module mpirun mkdir mv paraview rm sbatch"
     " scancel scontrol spack squeue srun tail time".split()
 )
 KEYWORDS = {"do", "done", "then", "else", "fi", "if", "while", "!", "{", "}"}

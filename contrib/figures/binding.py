@@ -10,7 +10,7 @@ from functools import cache
 
 import numpy
 
-from figures.page import HOLE, Page
+from figures.page import HOLE, Page, numbers_in
 from figures.sources import ROOT, Failed, NotRun, Source, read_csv
 
 DATA = ROOT / "doc/data/figures"
@@ -334,7 +334,7 @@ def printed_cell(output, nth, row, column, head):
     names = table[0]
     place = names.index(head) if names.count(head) == 1 else column
     text = table[2 + row][place]
-    return [float(n.replace(",", "")) for n in re.findall(r"[-+]?\d[\d,]*\.?\d*(?:[eE][-+]?\d+)?", text)]
+    return [number.value for number in numbers_in(text)]
 
 
 @cache

@@ -282,7 +282,8 @@ class Source:
                           lambda m: str(self.others[m[1]].directory / "results"),
                           self.entry["command"].replace("{}", results))
             return ["/bin/bash", "-c", line]
-        words = ["mpirun", "-np", str(self.entry["ranks"])] if self.entry.get("ranks", 1) > 1 else []
+        ranks = self.entry.get("ranks", 1)
+        words = ["mpirun", "-np", str(ranks)] if ranks > 1 else []
         words += [str(PROGRAM), str(self.path), "--output", results]
         words.append("--study" if self.kind == "study" else "--quiet")
         for value in self.entry.get("set", []):

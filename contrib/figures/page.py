@@ -127,7 +127,7 @@ class Page:
         raise ValueError(f"no table {place} below the heading '{heading}'")
 
     def rows_of_tests(self):
-        """Rows and sentences of which a test, named there, is the source: start, end, name."""
+        """Rows that name a test, which is their source: start, end, name."""
         for table in self.tables:
             for row in table.rows:
                 for name in TEST.findall(self.text[row[0][0]:row[-1][1]]):

@@ -10,7 +10,7 @@ from functools import cache
 
 import numpy
 
-from figures.page import HOLE, Page
+from figures.page import HOLE, Page, numbers_in
 from figures.sources import ROOT, Failed, NotRun, Source, read_csv
 
 DATA = ROOT / "doc/data/figures"
@@ -51,6 +51,8 @@ FUNCTIONS = {
     "above": kind_of("above"),
     "about": kind_of("about"),
     "seconds": kind_of("seconds"),
+    # what a cell has beside results, such as another's figures
+    "given": Kind(math.nan, "given"),
     "percent": lambda *values: [100 * value for value in flat(values)],
     "curve": curve,
     "table": lambda path: read_csv(ROOT / path),
@@ -72,6 +74,8 @@ def compare(number, figure, factor):
     unit = number.unit
     printed = number.value
     half = unit / 2 * (1 + 1e-9) + 1e-12 * abs(printed)
+    if kind == "given":
+        return "equal"
     if math.isnan(value):
         return "differs"
     if kind == "seconds":
@@ -334,7 +338,7 @@ def printed_cell(output, nth, row, column, head):
     names = table[0]
     place = names.index(head) if names.count(head) == 1 else column
     text = table[2 + row][place]
-    return [float(n.replace(",", "")) for n in re.findall(r"[-+]?\d[\d,]*\.?\d*(?:[eE][-+]?\d+)?", text)]
+    return [number.value for number in numbers_in(text)]
 
 
 @cache

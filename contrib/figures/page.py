@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 DIGITS = r"(?:\d{1,3}(?:,\d{3})+|\d+)(?:\.\d+)?(?:[eE][-+]?\d+)?"
 # Not part of a name (Q1, T_0, 3D), of a section (3.1.2) or of a power.
-NUMBER = re.compile(rf"(?<![\w.^/])(?<!\w-)[-+]?{DIGITS}(?![\w^]|\.\d)|(?<=\d-){DIGITS}(?![\w^]|\.\d)")
+NUMBER = re.compile(rf"(?:(?<![\w.^/])(?<!\w-)[-+]?|(?<=\d-)){DIGITS}(?![\w^]|\.\d)")
 HOLE = re.compile(r"\{([^{}]*)\}")
 TEST = re.compile(r"`([A-Z]\w+\.[\w*]+)`")
 
@@ -48,6 +48,10 @@ class Number:
         return 10.0 ** (int(exponent or 0) - len(mantissa.partition(".")[2]))
 
 
+def numbers_in(text):
+    return [Number(m.start(), m.end(), m[0]) for m in NUMBER.finditer(text)]
+
+
 @dataclass
 class Table:
     heading: str
@@ -73,15 +77,14 @@ class Page:
         labels += [place for table, place in zip(self.tables, tables)
                    if NO_RESULTS & {cell[2] for cell in table.head}]
 
-        def within(places, match):
-            return any(start <= match.start() < end for start, end in places)
+        def within(places, number):
+            return any(start <= number.start < end for start, end in places)
 
         self.numbers = [
-            Number(m.start(), m.end(), m[0])
-            for m in NUMBER.finditer(blanked)
-            if not within(labels, m) and (
-                within(tables, m) or len(m[0].lstrip("+-")) > 1
-                or not SMALL.match(blanked, m.start()))
+            number for number in numbers_in(blanked)
+            if not within(labels, number) and (
+                within(tables, number) or len(number.text.lstrip("+-")) > 1
+                or not SMALL.match(blanked, number.start))
         ]
 
     def line(self, position):
@@ -124,7 +127,7 @@ class Page:
         raise ValueError(f"no table {place} below the heading '{heading}'")
 
     def rows_of_tests(self):
-        """Rows and sentences of which a test, named there, is the source: start, end, name."""
+        """Rows that name a test, which is their source: start, end, name."""
         for table in self.tables:
             for row in table.rows:
                 for name in TEST.findall(self.text[row[0][0]:row[-1][1]]):

@@ -235,10 +235,9 @@ class Source:
 
     @cached_property
     def needs(self):
-        """Sources whose results a command reads."""
-        if self.kind != "command":
-            return []
-        return [self.others[name] for name in re.findall(r"\{(\w+)\}", self.entry["command"])]
+        """Sources whose results this one reads."""
+        texts = [self.entry.get("command", ""), *self.entry.get("set", [])]
+        return [self.others[name] for text in texts for name in re.findall(r"\{(\w+)\}", text)]
 
     @property
     def cost(self):
@@ -275,18 +274,20 @@ class Source:
                 raise
         return self._known
 
+    def _filled(self, text):
+        """With the directories of other sources, and its own for {}."""
+        return re.sub(r"\{(\w*)\}", lambda m: str(
+            (self.others[m[1]] if m[1] else self).directory / "results"), text)
+
     def _words(self):
-        results = str(self.directory / "results")
         if self.kind == "command":
-            line = re.sub(r"\{(\w+)\}",
-                          lambda m: str(self.others[m[1]].directory / "results"),
-                          self.entry["command"].replace("{}", results))
-            return ["/bin/bash", "-c", line]
-        words = ["mpirun", "-np", str(self.entry["ranks"])] if self.entry.get("ranks", 1) > 1 else []
-        words += [str(PROGRAM), str(self.path), "--output", results]
+            return ["/bin/bash", "-c", self._filled(self.entry["command"])]
+        ranks = self.entry.get("ranks", 1)
+        words = ["mpirun", "-np", str(ranks)] if ranks > 1 else []
+        words += [str(PROGRAM), str(self.path), "--output", str(self.directory / "results")]
         words.append("--study" if self.kind == "study" else "--quiet")
         for value in self.entry.get("set", []):
-            words += ["--set", value]
+            words += ["--set", self._filled(value)]
         return words
 
     def _result(self):
@@ -300,7 +301,7 @@ class Source:
                 raise NotRun(f"{self.shown}: {self.cost:g} s")
             if known != program_key():
                 shutil.rmtree(self.directory, ignore_errors=True)
-            self.directory.mkdir(parents=True, exist_ok=True)
+            (self.directory / "results").mkdir(parents=True, exist_ok=True)
             stamp.write_text(program_key())
             print(f"  runs {self.shown}", file=sys.stderr, flush=True)
             start = time.monotonic()

@@ -46,7 +46,8 @@ def one_line(error):
             " (contrib/install_packages does) and run /usr/bin/python3"
         )
     if isinstance(error, OSError):
-        return f"{error.strerror or error}: '{error.filename}'"
+        what = error.strerror or str(error)
+        return f"{what}: '{error.filename}'" if error.filename else what
     if isinstance(error, subprocess.CalledProcessError):
         return f"{error.cmd[0]} ended with exit code {error.returncode}"
     return None

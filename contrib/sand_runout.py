@@ -33,6 +33,8 @@ def main(directories):
         places = results.last_picture(directory).places
         x, top = surface(places)
         straight = (top > 0.15 * top.max()) & (top < 0.75 * top.max())
+        if straight.sum() < 2:
+            raise results.Refusal(f"the sand of '{directory}' has no slope yet")
         slope, height = numpy.polyfit(x[straight], top[straight], 1)
         ways = [-height / slope, numpy.quantile(places[:, 0], 0.98), places[:, 0].max()]
         print(

@@ -35,6 +35,8 @@ def main():
 
     a, length = 400 / (8960 * 383), 0.1
     series = results.pictures(output / "conduction")
+    if len(series) < 4:
+        raise results.Refusal(f"'{output}/conduction' has fewer than 4 pictures: let it run on")
     s = np.linspace(0, 1, 201)
     for time, name in (series[1], series[3], series[-1]):
         points = results.Data(name)

@@ -28,8 +28,9 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 MADE = ("output", "build", "checkpoint", "bin", "share", "parameters.prm", "strip.prm")
 ENDINGS = (".h", ".cc", ".py", ".prm", ".md", ".cmake", ".sh", ".sbatch", ".msh")
 PROGRAMS = set(
-    "cd cmake cp ctest echo export git grep kill ls make module mpirun mkdir mv paraview rm sbatch"
-    " scancel scontrol spack squeue srun tail time".split()
+    "cd chromium cmake cp cpack ctest echo export git grep kill ls make module mpirun mkdir mv"
+    " paraview pvpython rm sbatch scancel scontrol spack squeue srun tail time xvfb-run"
+.split()
 )
 KEYWORDS = {"do", "done", "then", "else", "fi", "if", "while", "!", "{", "}"}
 
@@ -288,7 +289,7 @@ def check_scene(scene):
 def main(*arguments):
     pages = [Path(a).resolve() for a in arguments] or [
         ROOT / "README.md",
-        *sorted((ROOT / "doc").rglob("*.md")),
+        *sorted((ROOT / "doc").glob("*.md")), # Sphinx looks at those of the site
         *sorted((ROOT / "prm").rglob("*.prm")),
     ]
     n_flaws = 0

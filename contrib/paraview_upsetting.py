@@ -46,6 +46,23 @@ def mirrored(source, name, kind):
     )
 
 
+def without_rigid(points, view, kind):
+    """Shows the points of rigid bodies, which have but their place; the others."""
+    part = {"Input": points, "Scalars": ["POINTS", "body"], "LowerThreshold": -0.5}
+    rigid = simple.Threshold(
+        registrationName="rigid points", ThresholdMethod="Below Lower Threshold", **part
+    )
+    shown = simple.Show(mirrored(rigid, "rigid points", kind), view)
+    shown.SetRepresentationType("Points")
+    shown.ColorArrayName = ["POINTS", ""]
+    shown.PointSize = 4
+    shown.AmbientColor = shown.DiffuseColor = [0.5, 0.5, 0.5]
+    return simple.Threshold(
+        registrationName="deformable points", ThresholdMethod="Above Upper Threshold",
+        **part, UpperThreshold=-0.5,
+    )
+
+
 def show(directory, field):
     """Makes the pipeline: boxes, cells of the grid, time, colour bar; the view."""
     kind = geometry(directory)
@@ -58,6 +75,8 @@ def show(directory, field):
     points.UpdatePipeline()
     if field not in points.PointData.keys():
         raise SystemExit(f"the points have no field '{field}', but {', '.join(points.PointData.keys())}")
+    if "body" in points.PointData.keys() and points.PointData["body"].GetRange()[0] < 0:
+        points = without_rigid(points, view, kind)
     is_known = "initial_domain" in points.PointData.keys()
     sides = "initial_domain[:, None, :]" if is_known else f"({SIDE[kind]})[:, None, None]"
     axes = simple.PythonCalculator(

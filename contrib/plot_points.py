@@ -28,13 +28,27 @@ MOST_BOXES = 300_000
 MAP = "viridis"
 
 
+def is_rigid(points):
+    """Of the points: those of rigid bodies carry nothing but their place."""
+    return points["body"] < 0 if "body" in points else numpy.zeros(len(points.places), bool)
+
+
+def values_of(points, field):
+    """What points are coloured by, not a number where they have none."""
+    return numpy.where(is_rigid(points), numpy.nan, points.size_of(field))
+
+
 def boxes(points, dim):
     """Corners (points x 2^dim x dim) of the boxes, nothing if they are not known."""
     if "initial_domain" not in points or "deformation_gradient" not in points:
         return None
-    F = points["deformation_gradient"][:, :dim, :dim]
-    edges = CORNERS[dim] * points["initial_domain"][:, None, :dim]
-    return points.places[:, None, :dim] + edges @ F.transpose(0, 2, 1)
+    rigid = is_rigid(points)
+    F = numpy.where(rigid[:, None, None], numpy.eye(3), points["deformation_gradient"])
+    edges = points["initial_domain"]
+    if not rigid.all():
+        edges = numpy.where(rigid[:, None], numpy.median(edges[~rigid], axis=0), edges)
+    shapes = (CORNERS[dim] * edges[:, None, :dim]) @ F[:, :dim, :dim].transpose(0, 2, 1)
+    return points.places[:, None, :dim] + shapes
 
 
 def diameters(points, dim, is_axisymmetric):
@@ -45,6 +59,8 @@ def diameters(points, dim, is_axisymmetric):
     volume = points["volume"]
     if is_axisymmetric:
         volume = volume / (2 * numpy.pi * points.places[:, 0])
+    if (volume > 0).any():
+        volume = numpy.where(volume > 0, volume, numpy.median(volume[volume > 0]))
     return 2 * (volume / numpy.pi) ** 0.5 if dim == 2 else (6 * volume / numpy.pi) ** (1 / 3)
 
 
@@ -75,8 +91,7 @@ def visible_faces(corners):
 def draw(axes, points, values, norm, dim=2, is_axisymmetric=False, grid=None):
     """Of points as results.Data; behind them the cells of a grid in the plane."""
     colours = plt.get_cmap(MAP)(norm(values))
-    if "body" in points:
-        colours[points["body"] < 0] = (0.5, 0.5, 0.5, 1)  # rigid
+    colours[is_rigid(points)] = (0.5, 0.5, 0.5, 1)
     corners = boxes(points, dim) if len(values) <= MOST_BOXES else None
     if grid is not None and dim == 2:
         cells = PolyCollection(
@@ -123,7 +138,7 @@ def limits(all_values):
     """A common scale; what is not finite does not count."""
     values = numpy.concatenate(list(all_values))
     values = values[numpy.isfinite(values)]
-    return Normalize(values.min(), values.max()) if len(values) else Normalize(0, 1)
+    return Normalize(values.min(), values.max()) if len(values) else Normalize(0, 0)
 
 
 def main():
@@ -137,7 +152,7 @@ def main():
         run = results.Run(directory)
         time, path = results.pictures(directory)[-1]
         points = results.Data(path)
-        runs.append((run, time, points, points.size_of(arguments.field)))
+        runs.append((run, time, points, values_of(points, arguments.field)))
     norm = limits(values for _, _, _, values in runs)
     figure, panels = plt.subplots(
         len(runs), figsize=(9, 3.4 * len(runs)), squeeze=False, constrained_layout=True

@@ -150,7 +150,7 @@ def points(runs, field, only_last=False):
         grids = dict(results.pictures(run.directory, "grid")) if run.has("grid.pvd") else {}
         for time, path in records[-1:] if only_last else choose(records):
             shown.append((run, time, results.Data(path), grids.get(time)))
-    values = [data.size_of(field) if field else numpy.zeros(len(data.places))
+    values = [plot_points.values_of(data, field) if field else numpy.zeros(len(data.places))
               for _, _, data, _ in shown]
     norm = plot_points.limits(values)
     is_plane = all(run.dim == 2 for run in runs)

@@ -254,7 +254,8 @@ class Run:
         self.dim = 3 if kind == "3D" else 2
         self.is_axisymmetric = kind == "axisymmetric"
         self.title = self.entries.get("General/Title") or self.name
-        self.units = {"length": "m", "mass": "kg", "time": "s", **self.summary.get("units", {})}
+        names = [unit.strip() for unit in self.entries.get("General/Units", "m, kg, s").split(",")]
+        self.units = dict(zip(("length", "mass", "time"), names)) | self.summary.get("units", {})
 
     def unit(self, quantity):
         """Of a quantity of QUANTITIES, in the units of the scene."""

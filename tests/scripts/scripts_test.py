@@ -271,4 +271,6 @@ parser.add_argument("test", choices=["help", "runs", "refusals", "plots", "repor
 for name in ("contrib", "scenes", "program", "output"):
     parser.add_argument("--" + name, type=Path, required=True)
 options = parser.parse_args()
+for name in ("contrib", "scenes", "program", "output"):
+    setattr(options, name, getattr(options, name).resolve())
 globals()[options.test]()

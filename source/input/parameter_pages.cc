@@ -224,7 +224,8 @@ namespace impm
     index << "# Parameters\n\nWritten by `impm_dealii "
              "--print-parameters=markdown`. Lists of names have one item each, "
              "which is called what it is: `Materials/material` stands for any "
-             "material. All numbers are in SI units.\n\n";
+             "material. What is for a third direction is there in 3D alone. "
+             "All numbers are in SI units.\n\n";
     for (const auto &section : sections_in("", entries))
       {
         std::ostringstream page;

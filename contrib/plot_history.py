@@ -7,6 +7,7 @@ Needs Debian's python3-matplotlib.
 """
 
 import csv
+import json
 import sys
 from pathlib import Path
 
@@ -14,6 +15,19 @@ import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
+
+
+def label_of(column, directories):
+    """With its unit, if the runs agree on one."""
+    units = set()
+    for directory in directories:
+        try:
+            summary = json.loads((Path(directory) / "summary.json").read_text())
+        except FileNotFoundError:
+            summary = {}
+        units.add(summary.get("column_units", {}).get(column, ""))
+    unit = units.pop() if len(units) == 1 else ""
+    return f"{column} ({unit})" if unit else column
 
 
 def main(x, y, picture, *directories):
@@ -26,8 +40,8 @@ def main(x, y, picture, *directories):
             [float(row[y]) for row in rows],
             label=Path(directory).name,
         )
-    axes.set_xlabel(x)
-    axes.set_ylabel(y)
+    axes.set_xlabel(label_of(x, directories))
+    axes.set_ylabel(label_of(y, directories))
     axes.grid(alpha=0.3)
     axes.legend()
     figure.savefig(picture, dpi=110, bbox_inches="tight")

@@ -238,8 +238,9 @@ namespace impm
       }
     if (Utilities::MPI::min(is_finite ? 1 : 0, discretization->communicator) ==
         0)
-      throw ComputationError("at t = " + Utilities::to_string(time + dt) +
-                             " s: the value of a load is no finite number "
+      throw ComputationError("at t = " + Utilities::to_string(time + dt) + ' ' +
+                             scene.general.units.time +
+                             ": the value of a load is no finite number "
                              "(section Loads, or a face)");
   }
 
@@ -264,8 +265,9 @@ namespace impm
     const bool fine = response.evaluate_start();
     // One rank alone may have the point: all must learn of it.
     if (Utilities::MPI::min(fine ? 1 : 0, discretization->communicator) == 0)
-      throw ComputationError("at t = " + std::to_string(time) +
-                             " s: a point has no stress at the start of a "
+      throw ComputationError("at t = " + std::to_string(time) + ' ' +
+                             scene.general.units.time +
+                             ": a point has no stress at the start of a "
                              "step");
     Vector forces;
     // Points that carry their acceleration have none yet when they start.

@@ -228,7 +228,7 @@ namespace impm
           {
             std::ostringstream where;
             where << "is not a number at " << cell->center()
-                  << ", t = " << state.time << " s";
+                  << ", t = " << state.time;
             flaw = where.str();
           }
         else

@@ -100,8 +100,8 @@ namespace impm
       std::string
       now() const
       {
-        return "at t = " + Utilities::to_string(problem.time + problem.dt) + ' ' +
-               problem.scene.general.units.time + ": ";
+        return "at t = " + Utilities::to_string(problem.time + problem.dt) +
+               ' ' + problem.scene.general.units.time + ": ";
       }
 
       /** What each point has and conducts. */

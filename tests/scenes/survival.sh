@@ -192,7 +192,7 @@ case $what in
     run 0
     run 0 --restart --set "Output/Point fields=displacement" \
       --set "Time/Largest number of steps=2"
-    run 1 --restart --set "Reference/Names=still" \
+    run 1 --restart --set "Reference/Names=pressure, still" \
       --set "Reference/still/Field=displacement" \
       --set "Reference/still/Expression=0; 0"
     says "do not have 'initial_position'"

@@ -34,7 +34,8 @@ namespace impm
           "Units",
           "allowed are three names, of units of length, mass and time, "
           "made of letters, as in 'cm, g, s'");
-      units = {names[0], names[1], names[2]};
+      if (section.is_read)
+        units = {names[0], names[1], names[2]};
     }
   } // namespace
 

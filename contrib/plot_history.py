@@ -10,6 +10,12 @@ import results
 import matplotlib.pyplot as plt
 
 
+def label_of(column, directories):
+    """With its unit, if the runs agree on one."""
+    labels = {results.Run(directory).label(column) for directory in directories}
+    return labels.pop() if len(labels) == 1 else column
+
+
 def main():
     parser = results.Parser(__doc__)
     parser.add_argument("x", help="column of history.csv")
@@ -21,8 +27,8 @@ def main():
     for directory in arguments.runs:
         history = results.history(directory)
         axes.plot(history[arguments.x], history[arguments.y], label=directory.name)
-    axes.set_xlabel(arguments.x)
-    axes.set_ylabel(arguments.y)
+    axes.set_xlabel(label_of(arguments.x, arguments.runs))
+    axes.set_ylabel(label_of(arguments.y, arguments.runs))
     axes.grid(alpha=0.3)
     axes.legend()
     figure.savefig(arguments.picture, dpi=110, bbox_inches="tight")

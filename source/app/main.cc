@@ -1,7 +1,9 @@
 #include <deal.II/base/conditional_ostream.h>
 #include <deal.II/base/mpi.h>
 
+#include <impm/app/console.h>
 #include <impm/app/mpi_start.h>
+#include <impm/app/version.h>
 #include <impm/base/exceptions.h>
 #include <impm/input/parameter_pages.h>
 #include <impm/run/signals.h>
@@ -9,6 +11,10 @@
 #include <impm/study/finer_run.h>
 #include <impm/study/study.h>
 
+#include <boost/algorithm/string/replace.hpp>
+
+#include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <iostream>
 #include <new>
@@ -18,6 +24,42 @@
 namespace
 {
   using namespace impm;
+
+  /** The words of a command as a shell takes them. */
+  std::string
+  quoted(const std::vector<std::string> &words)
+  {
+    std::string command;
+    for (const auto &word : words)
+      {
+        const bool is_plain =
+          std::all_of(word.begin(), word.end(), [](const unsigned char letter) {
+            return std::isalnum(letter) ||
+                   std::string("_./=,:+-").find(letter) != std::string::npos;
+          });
+        command += command.empty() ? "" : " ";
+        command += is_plain && !word.empty() ?
+                     word :
+                     "'" + boost::replace_all_copy(word, "'", "'\\''") + "'";
+      }
+    return command;
+  }
+
+  /** What goes on with a run that was stopped. */
+  std::string
+  command_to_go_on(const int          argc,
+                   const char *const *argv,
+                   const bool         from_checkpoint)
+  {
+    std::vector<std::string> words(argv, argv + argc);
+    if (from_checkpoint &&
+        std::count(words.begin(), words.end(), "--restart") == 0)
+      words.push_back("--restart");
+    if (const auto n = dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD);
+        n > 1)
+      words.insert(words.begin(), {"mpirun", "-np", std::to_string(n)});
+    return quoted(words);
+  }
 
   template <int dim>
   void
@@ -47,6 +89,18 @@ namespace
         directory, name, file.resolved({"Study"}), finer_runs, line.restart);
   }
 
+  /** Before what may take long. */
+  void
+  announce(const CommandLine &line)
+  {
+    namespace mpi = dealii::Utilities::MPI;
+    const auto n  = mpi::n_mpi_processes(MPI_COMM_WORLD);
+    Console(line.verbosity, mpi::this_mpi_process(MPI_COMM_WORLD) == 0)
+      .message(std::string("impm_dealii ") + version + ": " +
+               line.parameter_file +
+               (n > 1 ? ", on " + std::to_string(n) + " ranks" : ""));
+  }
+
   void
   compute(const CommandLine &line)
   {
@@ -54,6 +108,8 @@ namespace
       throw InputError("",
                        "--study under mpirun: it starts its own processes; "
                        "allowed is an entry 'ranks' in a list of the study");
+    if (!line.study)
+      announce(line);
     ParameterFile file(line.parameter_file, line.overrides, declare_file);
     try
       {
@@ -157,8 +213,12 @@ main(int argc, char **argv)
     }
   catch (const Interruption &interruption)
     {
+      const bool has_begun =
+        dynamic_cast<const InterruptedFinerRun *>(&interruption) == nullptr;
       errors << "impm_dealii: stopped by signal " << interruption.signal << ' '
-             << interruption.what() << std::endl;
+             << interruption.what()
+             << "; to go on: " << command_to_go_on(argc, argv, has_begun)
+             << std::endl;
       return 128 + interruption.signal;
     }
   catch (const ComputationError &error)

@@ -9,11 +9,15 @@ namespace impm
   bool
   is_started_by_mpi()
   {
-    const std::array<const char *, 4> signs = {
-      {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_SIZE", "PMI_RANK"}};
-    return std::any_of(signs.begin(), signs.end(), [](const char *sign) {
-      return std::getenv(sign) != nullptr;
-    });
+    // MPI itself leaves such signs when it starts.
+    static const bool is_started = []() {
+      const std::array<const char *, 4> signs = {
+        {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_SIZE", "PMI_RANK"}};
+      return std::any_of(signs.begin(), signs.end(), [](const char *sign) {
+        return std::getenv(sign) != nullptr;
+      });
+    }();
+    return is_started;
   }
 
   void

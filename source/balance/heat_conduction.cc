@@ -101,7 +101,7 @@ namespace impm
       now() const
       {
         return "at t = " + Utilities::to_string(problem.time + problem.dt) +
-               " s: ";
+               ' ' + problem.scene.general.units.time + ": ";
       }
 
       /** What each point has and conducts. */

@@ -252,8 +252,9 @@ namespace impm
     const bool fine = response.evaluate_start();
     // One rank alone may have the point: all must learn of it.
     if (Utilities::MPI::min(fine ? 1 : 0, discretization->communicator) == 0)
-      throw ComputationError("at t = " + std::to_string(time) +
-                             " s: a point has no stress at the start of a "
+      throw ComputationError("at t = " + std::to_string(time) + ' ' +
+                             scene.general.units.time +
+                             ": a point has no stress at the start of a "
                              "step");
     Vector forces;
     // Points that carry their acceleration have none yet when they start.

@@ -86,7 +86,7 @@ namespace impm
       }
     if (Utilities::MPI::min(is_finite ? 1 : 0, points.communicator) == 0)
       throw ComputationError("at t = " + Utilities::to_string(end_time) +
-                             " s: a 'Prescribed temperature' is no finite "
+                             ": a 'Prescribed temperature' is no finite "
                              "number from 0 K on");
   }
 

@@ -116,7 +116,7 @@ namespace impm
       lost = Utilities::MPI::max(lost, discretization.communicator);
     if (lost > 0)
       throw ComputationError(
-        "at t = " + Utilities::to_string(time) + " s: grip '" +
+        "at t = " + Utilities::to_string(time) + ": grip '" +
         name_of(lost - 1) +
         "' prescribes no finite number, or has no place at the start whose "
         "displacement leads to where it holds a node: it must be one to one, "

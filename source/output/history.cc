@@ -3,6 +3,7 @@
 #include <impm/base/names.h>
 #include <impm/output/history.h>
 #include <impm/output/probes.h>
+#include <impm/output/quantities.h>
 #include <impm/points/deformation_drift.h>
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 #include <filesystem>
 #include <iomanip>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <sstream>
 
@@ -166,6 +168,31 @@ namespace impm
                       {pair + "_largest_pressure", of_pair.largest_pressure}});
     }
 
+    Dimension
+    dimension_of(const ProbeSpec &probe)
+    {
+      using Kind     = ProbeSpec::Kind;
+      using Quantity = ProbeSpec::Quantity;
+      if (probe.kind == Kind::extent || probe.kind == Kind::lower_extent)
+        return a_length;
+      if (probe.kind == Kind::motion)
+        switch (probe.quantity)
+          {
+            case Quantity::displacement:
+              return a_length;
+            case Quantity::velocity:
+              return a_velocity;
+            case Quantity::rotation:
+              return no_dimension;
+            case Quantity::angular_velocity:
+              return a_rate;
+          }
+      for (const auto &field : point_quantities())
+        if (field.name == probe.field)
+          return field.dimension;
+      return no_dimension;
+    }
+
     template <int dim>
     double
     all_energy(const Totals<dim> &totals)
@@ -286,6 +313,36 @@ namespace impm
                        figures))
       names.push_back(column.first);
     return names;
+  }
+
+  template <int dim>
+  std::vector<std::pair<std::string, std::string>>
+  History<dim>::column_units(const Scene<dim> &scene)
+  {
+    std::map<std::string, Dimension> of_scene;
+    for (const auto &probe : scene.output.probes)
+      of_scene[probe.name] =
+        probe.factor == 1 ? dimension_of(probe) : no_dimension;
+    for (const auto &reaction : scene.output.reactions)
+      of_scene[reaction.name] = reaction.factor != 1 ? no_dimension :
+                                reaction.is_moment   ? a_moment :
+                                                       a_force;
+    for (const auto &column : history_columns())
+      if (column.name.size() > 1 && column.name[0] == '*')
+        for (const auto &pair : scene.contact.pairs)
+          of_scene[pair.name + column.name.substr(1)] = column.dimension;
+    const auto &units = scene.general.units;
+    std::vector<std::pair<std::string, std::string>> result;
+    for (const auto &name : column_names(scene))
+      {
+        const auto found = of_scene.find(name);
+        const auto unit  = found == of_scene.end() ?
+                             unit_of(name, history_columns(), units) :
+                             units.of(found->second);
+        if (!unit.empty())
+          result.emplace_back(name, unit);
+      }
+    return result;
   }
 
   template <int dim>
@@ -410,7 +467,7 @@ namespace impm
     add(rigid, totals);
     if (!std::isfinite(all_energy(totals)))
       throw ComputationError("at t = " + Utilities::to_string(report.time) +
-                             " s: the energy of the points is no finite "
+                             ": the energy of the points is no finite "
                              "number: they are too fast, or too much deformed");
     // What friction has taken is not lost to the method.
     budget.update(all_energy(totals) + report.contact_work,

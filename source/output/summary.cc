@@ -26,10 +26,15 @@ namespace impm
       return;
 
     nlohmann::ordered_json json;
-    json["scene"]           = scene;
-    json["status"]          = status;
-    json["version"]         = version;
-    json["revision"]        = git_revision;
+    json["scene"]    = scene;
+    json["status"]   = status;
+    json["version"]  = version;
+    json["revision"] = git_revision;
+    json["units"]    = {{"length", units.length},
+                        {"mass", units.mass},
+                        {"time", units.time}};
+    for (const auto &[name, unit] : column_units)
+      json["column_units"][name] = unit;
     json["dim"]             = dim;
     json["ranks"]           = Utilities::MPI::n_mpi_processes(communicator);
     json["points"]          = points;

@@ -84,7 +84,8 @@ namespace impm
     const int          error =
       MPI_Exscan(&n, &first, 1, MPI_UNSIGNED, MPI_SUM, grid.communicator);
     AssertThrowMPI(error);
-    auto id = particles.get_next_free_particle_index() + first;
+    auto id = next_id + first;
+    next_id += Utilities::MPI::sum(n, grid.communicator);
 
     std::vector<double> values(particles.n_properties_per_particle());
     for (const auto &seed : seeds)

@@ -1,5 +1,7 @@
+#include <deal.II/base/geometry_info.h>
 #include <deal.II/base/mpi.h>
 
+#include <impm/output/quantities.h>
 #include <impm/points/point_fields.h>
 
 #include <algorithm>
@@ -13,27 +15,12 @@ namespace impm
   const std::vector<std::string> &
   point_field_names()
   {
-    static const std::vector<std::string> names = {
-      "position",
-      "displacement",
-      "velocity",
-      "cauchy_stress",
-      "kirchhoff_stress",
-      "von_mises_stress",
-      "pressure",
-      "equivalent_plastic_strain",
-      "damage",
-      "opening",
-      "preconsolidation_pressure",
-      "deformation_gradient",
-      "volume",
-      "body",
-      "id",
-      "parent",
-      "temperature",
-      "internal_energy",
-      "principal_stress_difference",
-      "photoelastic_fringe"};
+    static const auto names = []() {
+      std::vector<std::string> all;
+      for (const auto &field : point_quantities())
+        all.push_back(field.name);
+      return all;
+    }();
     return names;
   }
 
@@ -45,6 +32,37 @@ namespace impm
     {
       return name == "equivalent_plastic_strain" || name == "damage" ||
              name == "opening" || name == "preconsolidation_pressure";
+    }
+
+    /** The displacement (m) of the nodes of a Lagrangian grid, at the points.
+     */
+    template <int dim>
+    std::vector<Tensor<1, dim>>
+    displacements_of_nodes(const MaterialPoints<dim> &points,
+                           const BackgroundGrid<dim> &grid)
+    {
+      std::vector<Tensor<1, dim>> result(points.size());
+      if (!grid.is_moved())
+        return result;
+      const Vector &u              = grid.nodal_state().displacement;
+      const auto    discretization = grid.discretization();
+      unsigned int  p              = 0;
+      for (const auto &particle : points.sorted.particles)
+        {
+          const auto nodes =
+            discretization->nodes_of(discretization->with_dofs(
+                                       particle.get_surrounding_cell()),
+                                     points.layer(p));
+          for (unsigned int v = 0; v < nodes.size(); ++v)
+            {
+              const double share = GeometryInfo<dim>::d_linear_shape_function(
+                particle.get_reference_location(), v);
+              for (unsigned int d = 0; d < dim; ++d)
+                result[p][d] += share * u.local_element(dim * nodes[v] + d);
+            }
+          ++p;
+        }
+      return result;
     }
   } // namespace
 
@@ -59,7 +77,8 @@ namespace impm
   std::optional<PointField<dim>>
   make_point_field(const std::string         &name,
                    const MaterialPoints<dim> &points,
-                   const double               fringe_number)
+                   const double               fringe_number,
+                   const BackgroundGrid<dim> *grid)
   {
     // The kinds of fields, each made of a function that gives its values.
     using Field       = PointField<dim>;
@@ -125,6 +144,16 @@ namespace impm
       return vector([&points](unsigned int p, const Point<dim> &x) {
         return x - points.initial_position(p);
       });
+    if (name == "displacement" && grid != nullptr && grid->is_lagrangian)
+      {
+        const auto all   = std::make_shared<std::vector<Tensor<1, dim>>>();
+        auto       field = vector(
+          [all](unsigned int p, const Point<dim> &) { return (*all)[p]; });
+        field.prepare = [&points, grid, all]() {
+          *all = displacements_of_nodes(points, *grid);
+        };
+        return field;
+      }
     if (name == "velocity" && points.offset_velocity > 0)
       return vector([&points](unsigned int p, const Point<dim> &) {
         return points.velocity(p);
@@ -216,7 +245,13 @@ namespace impm
   template double
   present_measure(const MaterialPoints<3> &, unsigned int, const Point<3> &);
   template std::optional<PointField<2>>
-  make_point_field(const std::string &, const MaterialPoints<2> &, double);
+  make_point_field(const std::string &,
+                   const MaterialPoints<2> &,
+                   double,
+                   const BackgroundGrid<2> *);
   template std::optional<PointField<3>>
-  make_point_field(const std::string &, const MaterialPoints<3> &, double);
+  make_point_field(const std::string &,
+                   const MaterialPoints<3> &,
+                   double,
+                   const BackgroundGrid<3> *);
 } // namespace impm

@@ -126,12 +126,15 @@ namespace impm
     auto   seconds_by = phases();
     auto   evaluations =
       Utilities::MPI::sum(counts.stress_evaluations, communicator);
-    archive &time &total &since_row &control &jump &work &resampled
-      &best_imbalance &adapted_step &off_grid &rigid &pictures &history &
-        reference &warnings &face_holds &pieces &widest_flow &has_failed &counts
-          .operator_applications &counts.tangents &counts.hierarchies &counts
-          .solver_fallbacks &counts.direct_systems &counts
-          .iterative_systems &evaluations &seconds &seconds_by;
+    archive &time &points.sorted
+      .next_id &total &since_row &control &jump &work &resampled &best_imbalance
+        &adapted_step &off_grid &rigid &pictures &history &reference &warnings
+          &face_holds &pieces &widest_flow &has_failed &counts
+      .operator_applications &counts.tangents &counts.hierarchies &counts
+      .solver_fallbacks &counts.direct_systems &counts
+      .iterative_systems &evaluations &seconds &seconds_by;
+    if (surfaces)
+      archive & surfaces->sorted.next_id;
     if (!Archive::is_loading::value)
       return;
     seconds_before = seconds;
@@ -306,7 +309,7 @@ namespace impm
     exchange(archive);
     std::ostringstream where;
     where << "restart from " << path << ": step " << total.step
-          << ", t = " << time << " s";
+          << ", t = " << time << ' ' << scene.general.units.time;
     console.message(where.str());
   }
 

@@ -91,8 +91,8 @@ namespace impm
       }
     std::ostringstream where;
     where
-      << "at t = " << time << " s, step " << total.step << ": " << text.str()
-      << ": "
+      << "at t = " << time << ' ' << scene.general.units.time << ", step "
+      << total.step << ": " << text.str() << ": "
       << (integrator->is_explicit() ?
             "explicit steps are too long, perhaps for nodes of little mass (which "
             "Formulation = momentum or Grid/Method = GIMP spares)" :

@@ -52,7 +52,8 @@ namespace impm
            << counts[t] << " points\n";
     for (unsigned int l = 0; l < scene.loads.on_surfaces.size(); ++l)
       text << "  load " << scene.loads.on_surfaces[l].name << ": on "
-           << area_under(l, *surfaces) << " m^2 of the surface\n";
+           << area_under(l, *surfaces) << ' ' << scene.general.units.of(an_area)
+           << " of the surface\n";
     text << "  fields of a point:\n";
     for (const auto &field : points.layout.fields())
       text << "    " << field.name << " (" << field.n_components << ")\n";
@@ -78,6 +79,8 @@ namespace impm
     summary.scene           = scene_name;
     summary.status          = status;
     summary.linear_solver   = name_linear_solver();
+    summary.units           = scene.general.units;
+    summary.column_units    = History<dim>::column_units(scene);
     summary.dim             = dim;
     summary.points          = points.sorted.n_global();
     summary.bytes_per_point = points.bytes_per_point();
@@ -139,8 +142,10 @@ namespace impm
     if (dt <= 1.001 * limit)
       return;
     std::ostringstream text;
-    text << "time steps of up to " << dt << " s grow without bound "
-         << "where they exceed about " << limit << " s: the integrator is "
+    const auto        &unit = scene.general.units.time;
+    text << "time steps of up to " << dt << ' ' << unit
+         << " grow without bound where they exceed about " << limit << ' '
+         << unit << ": the integrator is "
          << "stable only up to there";
     warn("instability", text.str());
   }
@@ -180,8 +185,9 @@ namespace impm
     if (report.smallest_gap <= -1)
       warn("surfaces in each other",
            "surfaces have passed into each other at t = " +
-             Utilities::to_string(time + report.dt) +
-             " s: steps are too long for what comes together, or the pressure "
+             Utilities::to_string(time + report.dt) + ' ' +
+             scene.general.units.time +
+             ": steps are too long for what comes together, or the pressure "
              "is beyond the modulus of the material");
     if (problem->spring_share >= 1e-3)
       warn(
@@ -189,8 +195,9 @@ namespace impm
         "springs that hold pieces of material that nothing else holds take " +
           Utilities::to_string(100 * problem->spring_share) +
           " % of the force of contact at t = " +
-          Utilities::to_string(time + report.dt) +
-          " s: a piece slides away under its load without inertia");
+          Utilities::to_string(time + report.dt) + ' ' +
+          scene.general.units.time +
+          ": a piece slides away under its load without inertia");
     if (!problem->free_bodies)
       return;
     for (const auto &body : rigid.bodies)
@@ -277,7 +284,7 @@ namespace impm
         text << std::setprecision(3) << "the flow of body '"
              << scene.bodies[b].name << "' has localised: from " << 100 * widest
              << " to " << 100 * now << " % of its volume, about "
-             << flow[b].place << " m";
+             << flow[b].place << ' ' << scene.general.units.length;
         if (scene.grid.method == GridMethod::mpm)
           text << "; where and when is not to be trusted, since the noise of "
                   "points that cross cells is a stronger flaw than those of "
@@ -302,9 +309,11 @@ namespace impm
         has_failed[b] = true;
         std::ostringstream text;
         text << std::setprecision(3) << "body '" << scene.bodies[b].name
-             << "' has begun to fail at t = " << time << " s: " << failed[b].n
-             << " points, about " << failed[b].place
-             << " m, have lost their stress; where failure runs, and what it "
+             << "' has begun to fail at t = " << time << ' '
+             << scene.general.units.time << ": " << failed[b].n
+             << " points, about " << failed[b].place << ' '
+             << scene.general.units.length
+             << ", have lost their stress; where failure runs, and what it "
                 "takes, depends on the size of cells";
         warn("failure of " + scene.bodies[b].name, text.str());
       }

@@ -28,6 +28,7 @@ namespace impm
     {
       static const std::set<std::string> entries = {
         "Output/Directory",
+        "Output/Format",
         "Output/Pictures",
         "Output/Time between pictures",
         "Output/Steps between pictures",

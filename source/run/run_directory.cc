@@ -48,7 +48,7 @@ namespace impm
   {
     namespace fs = std::filesystem;
     static const std::regex own(
-      R"(history\.csv|summary\.json|(particles|grid)(\.pvd|_\d{5,}(\.\d+)?\.p?vtu)|checkpoint/(last_good|[ab]\..*))");
+      R"(history\.csv|summary\.json|(particles|grid|surfaces)(\.pvd|\.xdmf|_\d{5,}((\.\d+)?\.p?vtu|\.h5))|checkpoint/(last_good|[ab]\..*))");
     if (Utilities::MPI::this_mpi_process(communicator) == 0)
       {
         std::vector<fs::path> files;

@@ -87,11 +87,12 @@ namespace impm
     , integrator(make_time_integrator(scene.time))
     , control(scene.time, integrator->order())
     , builder(scene.grid)
-    , pictures(scene.output, points, rigid, grid, surfaces.get())
+    , pictures(
+        scene.output, scene.general.units, points, rigid, grid, surfaces.get())
     , history(scene, points, rigid, grid)
     , reference(scene, points, history)
     , console(verbosity, Utilities::MPI::this_mpi_process(communicator) == 0)
-    , warnings(scene.warnings)
+    , warnings(scene.warnings, scene.general.units.time)
   {
     check_grips(scene.grips, points);
     if (const auto &force = scene.loads.body_force)
@@ -363,9 +364,11 @@ namespace impm
         if (failed && control.is_too_short() && !can_jump())
           {
             std::ostringstream where;
-            where << "at t = " << time << " s, step " << report.step << ": "
-                  << failure << ", and dt = " << dt
-                  << " s is below the smallest time step: " << explain(failure);
+            const auto        &unit = scene.general.units.time;
+            where << "at t = " << time << ' ' << unit << ", step "
+                  << report.step << ": " << failure << ", and dt = " << dt
+                  << ' ' << unit
+                  << " is below the smallest time step: " << explain(failure);
             throw ComputationError(where.str());
           }
       }
@@ -462,12 +465,54 @@ namespace impm
 
   template <int dim>
   void
-  Simulation<dim>::picture(const bool grid_has_increment)
+  Simulation<dim>::picture(const bool grid_has_step)
   {
     TimerOutput::Scope scope(timer, "output");
-    pictures.write(directory,
-                   time,
-                   grid_has_increment ? &result.increment : nullptr);
+    pictures.write(directory, time, nodal_picture(grid_has_step));
+  }
+
+  template <int dim>
+  NodalPicture
+  Simulation<dim>::nodal_picture(const bool grid_has_step)
+  {
+    const auto   discretization = grid.discretization();
+    NodalPicture nodes;
+    for (Vector *vector :
+         {&nodes.mass, &nodes.velocity, &nodes.increment, &nodes.reaction})
+      discretization->initialize(*vector);
+    nodes.dt = report.dt > 0 ? report.dt : scene.time.step * step_unit();
+    if (grid_has_step)
+      {
+        nodes.increment     = result.increment;
+        const auto &carrier = problem->constraints.carrier;
+        for (unsigned int i = 0; i < end_forces.locally_owned_size(); ++i)
+          if (carrier[i] != StepConstraints<dim>::no_carrier)
+            nodes.reaction.local_element(i) = end_forces.local_element(i);
+      }
+    // What a step has left half done touches no grid.
+    if (is_between_steps)
+      {
+        if (!grid.is_moved())
+          builder.remember(points);
+        const auto footprints = builder.build(points, grid, *discretization);
+        if (scene.time.has_inertia())
+          {
+            const auto motion = gather_motion(
+              points, scene.bodies, footprints, grid, *discretization);
+            nodes.mass     = motion.mass;
+            nodes.velocity = motion.velocity;
+            discretization->interpolate_hanging(nodes.velocity);
+          }
+        else
+          {
+            nodes.mass = gather_mass(points, footprints, *discretization);
+            nodes.velocity.equ(1 / nodes.dt, nodes.increment);
+          }
+      }
+    for (const Vector *vector :
+         {&nodes.mass, &nodes.velocity, &nodes.increment, &nodes.reaction})
+      vector->update_ghost_values();
+    return nodes;
   }
 
   template <int dim>
@@ -495,7 +540,7 @@ namespace impm
         console.finish();
         throw Interruption(asked[0],
                            "after step " + std::to_string(total.step) +
-                             ", which is saved; --restart goes on from there");
+                             ", which is saved");
       }
     else if (by_steps || asked[1] > 0)
       save_checkpoint("the interval");

@@ -27,12 +27,13 @@ namespace impm
       Utilities::MPI::min_max_avg(largest, communicator).max_index;
     where = Utilities::MPI::broadcast(communicator, where, rank);
     std::ostringstream text;
-    text << "the equilibrium at t = " << time << " s is not stable";
+    text << "the equilibrium at t = " << time << ' ' << scene.general.units.time
+         << " is not stable";
     for (const auto &[name, value] : history.last_figures())
       text << ", " << name << " = " << value;
     text << ": it bifurcates, or loads have passed their limit, along a mode "
             "that moves most at "
-         << where.first << " m in direction "
+         << where.first << ' ' << scene.general.units.length << " in direction "
          << "xyz"[where.second];
     if (scene.solver.unstable_equilibria == UnstableEquilibria::leave)
       text << "; the run goes on to a stable one";
@@ -48,8 +49,9 @@ namespace impm
     if (!jump.damp_more())
       {
         std::ostringstream where;
-        where << "at t = " << time << " s, step " << report.step << ": "
-              << failure << ", with damped steps, too: no stable equilibrium "
+        where << "at t = " << time << ' ' << scene.general.units.time
+              << ", step " << report.step << ": " << failure
+              << ", with damped steps, too: no stable equilibrium "
               << "is near (a body that is torn, has collapsed or that nothing "
               << "holds, or a load beyond what it can bear): "
               << explain(failure);
@@ -58,8 +60,9 @@ namespace impm
     if (!begins)
       return;
     std::ostringstream text;
-    text << "there is no equilibrium near that at t = " << time << " s ("
-         << failure << "): damped steps look for one";
+    text << "there is no equilibrium near that at t = " << time << ' '
+         << scene.general.units.time << " (" << failure
+         << "): damped steps look for one";
     warn("jump", text.str());
   }
 

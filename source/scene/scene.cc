@@ -223,8 +223,6 @@ namespace impm
              }) ||
       any_of(scene.loads.tractions,
              [](const auto &traction) { return traction.is_initial; }) ||
-      any_of(scene.output.point_fields,
-             [](const auto &field) { return field == "displacement"; }) ||
       any_of(scene.output.probes,
              [](const auto &probe) {
                return probe.field == "displacement" || probe.where;

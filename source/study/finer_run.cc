@@ -93,9 +93,9 @@ namespace impm
             }
           catch (const Interruption &interruption)
             {
-              throw Interruption(interruption.signal,
-                                 "in the finer run of " + reference +
-                                   ", which will start anew");
+              throw InterruptedFinerRun(interruption.signal,
+                                        "in the finer run of " + reference +
+                                          ", which will start anew");
             }
           catch (const ComputationError &error)
             {

@@ -117,7 +117,7 @@ case $what in
       wait "$pid"
       code=$?
       [ "$code" = "${signal#*:}" ] || fail "exit code $code"
-      says "^impm_dealii: stopped by signal .* step [0-9]+.*--restart goes on"
+      says "^impm_dealii: stopped by signal .* step [0-9]+.* to go on: .*upsetting.prm .*--output .*--restart"
       grep -q '"status": "stopped by a signal"' "$output/run/summary.json" ||
         fail "no status"
       check_pictures "$output/run"
@@ -134,7 +134,7 @@ case $what in
     wait_for_checkpoint
     kill -USR1 "$pid"
     wait "$pid" # with what mpirun makes of two codes
-    grep -q "stopped by signal .* step [0-9]+.*--restart goes on" -E \
+    grep -q "stopped by signal .* step [0-9]+.* to go on: .*upsetting.prm .*--output .*--restart" -E \
       "$output/said" || fail "does not stop"
     check_pictures "$output/run"
     "${ranks[@]}" --restart > "$output/said" 2>&1 &
@@ -185,12 +185,16 @@ case $what in
     run 0 --restart --set "Time/End time=2e-3" --set "Time/Time step=5e-5" \
       --set "Solver/Newton tolerance=1e-9" --set "Output/Pictures=false" \
       --set "Output/Point fields=displacement"
-    # Gauss points do not know where they began unless something asks for it.
+    # Gauss points do not know where they began unless a reference asks for it.
     scene=("$scenes/extreme/footing_finite_elements.prm" --quiet
       --output "$output/run" --set "Output/Checkpoints/Interval in steps=1"
       --set "Time/Largest number of steps=1")
     run 0
-    run 1 --restart --set "Output/Point fields=displacement"
+    run 0 --restart --set "Output/Point fields=displacement" \
+      --set "Time/Largest number of steps=2"
+    run 1 --restart --set "Reference/Names=pressure, still" \
+      --set "Reference/still/Field=displacement" \
+      --set "Reference/still/Expression=0; 0"
     says "do not have 'initial_position'"
     ;;
   locked)
@@ -225,6 +229,30 @@ case $what in
       [ -e "$output/run/$file" ] || fail "removes $file"
     done
     ;;
+  unwritable) # each file in turn: one line with its name
+    run 0 --set "Time/Largest number of steps=1"
+    cp -a "$output/run" "$output/start"
+    for file in summary.json parameters.prm particles.pvd grid.pvd \
+      checkpoint/last_good; do
+      ln -s /dev/full "$output/run/$file.new"
+      run 3 --set "Time/Largest number of steps=2"
+      says "^impm_dealii: system failure: cannot write '.*run/$file'"
+      rm -f "$output/run/$file.new"
+    done
+    for file in particles_00002.vtu grid_00002.vtu; do
+      rm -rf "$output/run"
+      cp -a "$output/start" "$output/run"
+      ln -s /dev/full "$output/run/$file"
+      run 3 --restart --set "Output/Steps between pictures=2" \
+        --set "Time/Largest number of steps=2"
+      says "^impm_dealii: system failure: cannot write '.*run/$file'"
+    done
+    mkdir "$output/run/history.csv.d" # no file, but a directory
+    rm "$output/run/history.csv"
+    mv "$output/run/history.csv.d" "$output/run/history.csv"
+    run 3 --restart
+    says "^impm_dealii: system failure: .*run/history.csv"
+    ;;
   full) # disk; needs the rights of root to make one
     mkdir "$output/run"
     mount -t tmpfs -o size=2m tmpfs "$output/run" 2> /dev/null ||
@@ -232,7 +260,12 @@ case $what in
     trap 'umount "$output/run"' EXIT
     scene+=(--set "Time/End time=4e-3")
     make_whole
-    for pictures in true false; do
+    for pictures in true false hdf5; do
+      format=()
+      if [ "$pictures" = hdf5 ]; then
+        format=(--set Output/Format=hdf5)
+        pictures=true
+      fi
       # Sooner or later there is no room for pictures or checkpoints.
       for kilobytes in 1200 1600; do
         rm -rf "$output/run/"*
@@ -240,7 +273,7 @@ case $what in
         head -c "$((kilobytes * 1024))" /dev/zero > "$output/run/filler"
         code=0
         "$program" "${scene[@]}" --restart --set "Output/Pictures=$pictures" \
-          --set "Output/Steps between pictures=1" > "$output/said" 2>&1 || code=$?
+          "${format[@]}" --set "Output/Steps between pictures=1" > "$output/said" 2>&1 || code=$?
         case $code in
           0) ;;
           3) says "^impm_dealii: system failure: cannot write '.*run/.*'" ;;

@@ -18,7 +18,8 @@ namespace impm
       : verbosity(is_first_rank ? verbosity : CommandLine::Verbosity::quiet)
     {}
 
-    /** One line a row of the history; a progress bar if a person watches. */
+    /** One line a row of the history, as much of it as the terminal is wide, or
+     * 80 letters where there is none; a progress bar if a person watches. */
     void
     step(const StepReport                                  &report,
          double                                             end_time,
@@ -38,8 +39,22 @@ namespace impm
 
   private:
     const CommandLine::Verbosity verbosity;
-    bool                         has_header = false, has_bar = false;
+    bool                         has_bar = false;
+    std::string                  header; ///< the last one
   };
+
+  /** A column of the table of steps. */
+  struct StepColumn
+  {
+    std::string  title, value;
+    unsigned int width;
+    unsigned int rank; ///< the lower, the sooner it has its place
+  };
+
+  /** Whether each of them is shown on lines of a width, which has room for the
+   * first of all at least. */
+  std::vector<bool>
+  columns_that_fit(const std::vector<StepColumn> &columns, unsigned int width);
 } // namespace impm
 
 #endif

@@ -109,6 +109,11 @@ namespace impm
     static std::vector<std::string>
     column_names(const Scene<dim> &scene);
 
+    /** Of columns that have a unit: of a probe or reaction with a factor it is
+     * not known. */
+    static std::vector<std::pair<std::string, std::string>>
+    column_units(const Scene<dim> &scene);
+
     /** Starts the file, or goes on with it where serialize() says: what was
      * written since then goes. */
     void

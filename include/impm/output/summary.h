@@ -4,6 +4,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <impm/base/memory.h>
+#include <impm/base/units.h>
 #include <impm/points/adapt_points.h>
 
 #include <map>
@@ -27,12 +28,15 @@ namespace impm
   /** summary.json: what a run was, what it cost and what it gave. */
   struct RunSummary
   {
-    std::string   scene, status, linear_solver;
-    int           dim;
-    unsigned long points, bytes_per_point;
-    PointsPerCell points_per_cell;
-    unsigned int  steps;
-    double        time;
+    std::string scene, status, linear_solver;
+    Units       units;
+    /** Of the history, such as have a unit. */
+    std::vector<std::pair<std::string, std::string>>   column_units;
+    int                                                dim;
+    unsigned long                                      points, bytes_per_point;
+    PointsPerCell                                      points_per_cell;
+    unsigned int                                       steps;
+    double                                             time;
     std::vector<std::pair<std::string, unsigned long>> counts;
     std::vector<std::pair<std::string, double>>        figures; ///< last row
     std::map<std::string, double> phases; ///< wall seconds of rank 0

@@ -16,14 +16,16 @@ namespace impm
   {
   public:
     /** Takes over what reading the scene has warned of. */
-    explicit Warnings(const std::vector<std::string> &of_input)
+    explicit Warnings(const std::vector<std::string> &of_input,
+                      const std::string              &time_unit = "s")
+      : time_unit(time_unit)
     {
       for (const auto &text : of_input)
         warnings.push_back({"", text, 1});
     }
 
     /**
-     * Counts what happens at an instant (s). The first text of a kind stays;
+     * Counts what happens at an instant. The first text of a kind stays;
      * returns whether this is it.
      */
     bool
@@ -36,7 +38,7 @@ namespace impm
             return false;
           }
       std::ostringstream dated;
-      dated << "t = " << time << " s: " << text;
+      dated << "t = " << time << ' ' << time_unit << ": " << text;
       warnings.push_back({kind, dated.str(), 1});
       return true;
     }
@@ -81,6 +83,7 @@ namespace impm
         archive &kind &text &count;
       }
     };
+    const std::string    time_unit;
     std::vector<Warning> warnings;
   };
 } // namespace impm

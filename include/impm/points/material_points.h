@@ -61,6 +61,10 @@ namespace impm
 
     dealii::Particles::ParticleHandler<dim> particles;
 
+    /** Of the next particle. No number is given twice, though particles may
+     * go. */
+    dealii::types::particle_index next_id = 0;
+
   private:
     /** Takes those that have gone further than neighbours see to the ranks that
      * have their cells. Collective. */

@@ -54,14 +54,16 @@ namespace impm
 
   /**
    * The field of a name, or nothing when the points of this scene do not have
-   * it. Keeps a reference to the points. The fringe number is that of
-   * `photoelastic_fringe`.
+   * it. Keeps references. The fringe number is that of `photoelastic_fringe`.
+   * On a Lagrangian grid, if it is given, points that do not keep where they
+   * were have displacements by the nodes, which are theirs to round-off.
    */
   template <int dim>
   std::optional<PointField<dim>>
   make_point_field(const std::string         &name,
                    const MaterialPoints<dim> &points,
-                   double                     fringe_number = 7);
+                   double                     fringe_number = 7,
+                   const BackgroundGrid<dim> *grid          = nullptr);
 
   /** Present volume of a point (m^3); of the plane its area, of a ring that of
    * its cross section (m^2). */

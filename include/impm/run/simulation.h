@@ -211,8 +211,13 @@ namespace impm
     void
     check_expressions() const;
 
+    /** Of points and grid as they are, and of the step that ended on it unless
+     * there is none. Collective. */
     void
-    picture(bool grid_has_increment);
+    picture(bool grid_has_step);
+
+    NodalPicture
+    nodal_picture(bool grid_has_step);
 
     /** All that outlives a step. Collective. */
     void

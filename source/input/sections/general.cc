@@ -2,14 +2,49 @@
 
 #include <impm/input/sections/general.h>
 
+#include <algorithm>
+#include <cctype>
+
 namespace impm
 {
+  namespace
+  {
+    void
+    add_units(const Section &section, Units &units)
+    {
+      std::vector<std::string> names;
+      section.add("Units",
+                  names,
+                  "Of length, mass and time, in which the numbers of this file "
+                  "are: pictures, plots and messages name them. No number "
+                  "changes; temperatures are in K.",
+                  "m, kg, s");
+      const auto is_name = [](const std::string &name) {
+        return !name.empty() &&
+               std::all_of(name.begin(), name.end(), [](const char letter) {
+                 const auto byte = static_cast<unsigned char>(letter);
+                 return std::isalpha(byte) ||
+                        byte >= 0x80; // letters of other alphabets
+               });
+      };
+      if (names.size() != 3 ||
+          !std::all_of(names.begin(), names.end(), is_name))
+        section.refuse(
+          "Units",
+          "allowed are three names, of units of length, mass and time, "
+          "made of letters, as in 'cm, g, s'");
+      if (section.is_read)
+        units = {names[0], names[1], names[2]};
+    }
+  } // namespace
+
   void
   add_general(const Section &top, GeneralSpec &general)
   {
     const auto               section = top.subsection("General");
     std::vector<std::string> constants;
     section.add("Title", general.title, "One line on it.");
+    add_units(section, general.units);
     section.add("Constants",
                 constants,
                 "Named numbers for the expressions of this file: "

@@ -1,3 +1,5 @@
+#include <deal.II/base/config.h>
+
 #include <impm/input/sections/geometry.h>
 #include <impm/input/sections/output.h>
 #include <impm/points/point_fields.h>
@@ -29,6 +31,17 @@ namespace impm
                   true,
                   "Whether VTU files of points and grid are written.");
       // Also where pictures are off, so that a study can switch them off.
+      section.add("Format",
+                  output.format,
+                  {{"vtu", PictureFormat::vtu}, {"hdf5", PictureFormat::hdf5}},
+                  "vtu: PVD files that name VTU files, one a rank. hdf5: XDMF "
+                  "files that name HDF5 files, one for all ranks: for large "
+                  "runs.");
+#ifndef DEAL_II_WITH_HDF5
+      if (output.format == PictureFormat::hdf5)
+        section.refuse("Format",
+                       "allowed is vtu, since deal.II was built without HDF5");
+#endif
       section.add("Time between pictures",
                   output.picture_interval,
                   {"0", 0},
@@ -62,8 +75,9 @@ namespace impm
       section.add("Point fields",
                   output.point_fields,
                   "Fields of the points; those that this scene does not have "
-                  "are left out.",
-                  "velocity, cauchy_stress, von_mises_stress, "
+                  "are left out. Pictures of points always have displacement "
+                  "and id.",
+                  "velocity, displacement, cauchy_stress, von_mises_stress, "
                   "equivalent_plastic_strain, damage, deformation_gradient, "
                   "volume, body, id");
       if (!output.pictures)

@@ -1,6 +1,7 @@
 #ifndef impm_input_sections_general_h
 #define impm_input_sections_general_h
 
+#include <impm/base/units.h>
 #include <impm/input/sections/section.h>
 
 #include <string>
@@ -13,6 +14,7 @@ namespace impm
   {
     std::string title;
     Constants   constants;
+    Units       units;
   };
 
   void

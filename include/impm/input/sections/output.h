@@ -59,13 +59,21 @@ namespace impm
     double              factor = 1;
   };
 
+  /** Of pictures. */
+  enum class PictureFormat
+  {
+    vtu, ///< a file a rank
+    hdf5 ///< one file, which an XDMF file tells how to read
+  };
+
   struct OutputSpec
   {
-    std::string  directory;
-    bool         pictures;
-    double       picture_interval = 0; ///< 0: by picture_steps
-    unsigned int picture_steps    = 1;
-    unsigned int row_steps; ///< between rows of history
+    std::string   directory;
+    bool          pictures;
+    PictureFormat format           = PictureFormat::vtu;
+    double        picture_interval = 0; ///< 0: by picture_steps
+    unsigned int  picture_steps    = 1;
+    unsigned int  row_steps; ///< between rows of history
     // Between checkpoints; 0: none for that reason.
     unsigned int              checkpoint_steps   = 0;
     double                    checkpoint_seconds = 0; ///< of wall time

@@ -12,8 +12,10 @@ import matplotlib.pyplot as plt
 
 def label_of(column, directories):
     """With its unit, if the runs agree on one."""
-    labels = {results.Run(directory).label(column) for directory in directories}
-    return labels.pop() if len(labels) == 1 else column
+    summaries = [results.Run(directory).summary for directory in directories]
+    units = {summary.get("column_units", {}).get(column, "") for summary in summaries}
+    unit = units.pop() if len(units) == 1 else ""
+    return f"{column} ({unit})" if unit else column
 
 
 def main():

@@ -123,6 +123,10 @@ namespace impm
       {"opening", a_length, "of a crack, likewise"},
       {"preconsolidation_pressure", a_stress, "of Cam clay"},
       {"deformation_gradient", {}, "F, 3 x 3, by rows"},
+      {"initial_domain",
+       a_length,
+       "edges of the box that it was at the start, which F carries along; of "
+       "boxes (GIMP) and of points that split"},
       {"volume", a_volume, "at present"},
       {"body", {}, "number of its body, from 0; rigid ones -1, -2, ..."},
       {"id",

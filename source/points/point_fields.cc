@@ -175,6 +175,12 @@ namespace impm
       });
     if (name == "deformation_gradient")
       return tensor(F);
+    if (const auto offset = points.layout.find(name);
+        offset && name == "initial_domain")
+      return vector(
+        [&points, offset = *offset](unsigned int p, const Point<dim> &) {
+          return points.vector(p, offset);
+        });
     if (name == "volume")
       return scalar([&points, F](unsigned int p) {
         return points.initial_volume(p) * determinant(F(p));

@@ -79,7 +79,7 @@ namespace impm
                   "and id.",
                   "velocity, displacement, cauchy_stress, von_mises_stress, "
                   "equivalent_plastic_strain, damage, deformation_gradient, "
-                  "volume, body, id");
+                  "initial_domain, volume, body, id");
       if (!output.pictures)
         output.point_fields.clear();
       for (const auto &field : output.point_fields)

@@ -206,7 +206,10 @@ def check_span(span):
             if name.endswith("*"):
                 if name != "*" and not any(n.startswith(name[:-1]) for n in names()):
                     yield f"no name '{span}'"
-            elif is_name and name not in names() and name not in literals():
+                continue
+            # The code puts numbers behind some of them.
+            known = {name, re.sub(r"\d+$", "", name)} & (names() | literals())
+            if is_name and not known:
                 yield f"no name '{name}'"
 
 

@@ -243,9 +243,14 @@ class Source:
     def cost(self):
         return (self.seconds or 0) + sum(source.cost for source in self.needs)
 
-    @cached_property
+    @property
     def shown(self):
         """The command as one would type it."""
+        return self._filled(self.line).replace(f"{ROOT}/", "")
+
+    @cached_property
+    def line(self):
+        """The same with the names of other sources, which it goes by."""
         if self.kind == "command":
             return self.entry["command"]
         ranks = self.entry.get("ranks", 1)
@@ -258,7 +263,7 @@ class Source:
 
     @cached_property
     def directory(self):
-        key = hashlib.sha1(self.shown.encode()).hexdigest()[:6]
+        key = hashlib.sha1(self.line.encode()).hexdigest()[:6]
         return ROOT / "output/figures" / f"{Path(self.file).stem}-{key}"
 
     @property

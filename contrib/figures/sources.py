@@ -263,7 +263,9 @@ class Source:
 
     @cached_property
     def directory(self):
-        key = hashlib.sha1(self.line.encode()).hexdigest()[:6]
+        """Named by its command and those of the sources that it reads."""
+        line = re.sub(r"\{(\w+)\}", lambda m: self.others[m[1]].directory.name, self.line)
+        key = hashlib.sha1(line.encode()).hexdigest()[:6]
         return ROOT / "output/figures" / f"{Path(self.file).stem}-{key}"
 
     @property

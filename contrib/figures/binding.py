@@ -114,6 +114,8 @@ class Binding:
         if path.exists():
             with self._telling(f"{path.relative_to(ROOT)}: "):
                 self.data = tomllib.loads(path.read_text(encoding="utf-8"))
+        unknown = set(self.data) - {"text", "let", "sources", "table", "given"}
+        self.problems += [f"{path.name}: '{key}' is not known" for key in sorted(unknown)]
         self.sources = {}
         for source, entry in self.data.get("sources", {}).items():
             with self._telling():

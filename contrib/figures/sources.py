@@ -190,9 +190,9 @@ class Output:
         self.directory = directory
         self.text = (directory / "log.txt").read_text(encoding="utf-8")
 
-    def run(self, path):
-        """One that the command made, by its directory."""
-        return Run(ROOT / path)
+    def run(self, path=""):
+        """One that the command made, by its directory: by default its own."""
+        return Run(ROOT / path if path else self.directory / "results")
 
     def find(self, pattern):
         """The numbers in the groups of a regular expression."""
@@ -230,7 +230,7 @@ class Source:
         self.file = words if self.kind != "command" else words.split()[0]
         folder = ROOT if self.kind == "command" or self.file.startswith("tests/") else ROOT / "prm"
         self.path = folder / self.file
-        if not self.path.exists():
+        if "/" in self.file and not self.path.exists():
             raise ValueError(f"source '{name}': there is no {self.path.relative_to(ROOT)}")
 
     @cached_property

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Says where columns of a history differ most from those of a reference.
 
 Both are interpolated linearly over an abscissa that only grows; relative
@@ -6,24 +6,12 @@ differences are taken at every row of the history that the reference covers.
 
     contrib/compare_curves.py output/upsetting/history.csv \\
         prm/references/upsetting.csv platen_displacement --from 5e-4
-
-Needs Debian's python3-numpy.
 """
-import argparse
-import csv
 
+import results
 import numpy
 
-
-def read(name):
-    with open(name) as file:
-        rows = list(csv.DictReader(file))
-    return {key: numpy.array([float(row[key]) for row in rows])
-            for key in rows[0]}
-
-
-parser = argparse.ArgumentParser(
-    description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+parser = results.Parser(__doc__)
 parser.add_argument("history")
 parser.add_argument("reference")
 parser.add_argument("abscissa", help="column of both")
@@ -31,7 +19,8 @@ parser.add_argument("--from", dest="start", type=float, default=-numpy.inf,
                     help="first abscissa that counts")
 arguments = parser.parse_args()
 
-history, reference = read(arguments.history), read(arguments.reference)
+history = results.read_numbers(arguments.history)
+reference = results.read_numbers(arguments.reference)
 x, known = history[arguments.abscissa], reference[arguments.abscissa]
 counts = (x >= max(arguments.start, known[0]) * (1 - 1e-9)) & (
     x <= known[-1] * (1 + 1e-9))

@@ -7,22 +7,13 @@
 
 writes doc/figures/disks_motion.png from the pictures of the first directory and
 doc/figures/disks_energy.png from the histories of four runs of the study.
-Needs Debian's python3-vtk9 and python3-matplotlib.
 """
 
-import csv
-import sys
-import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
-import matplotlib
-
-matplotlib.use("Agg")
+import results
 import matplotlib.pyplot as plt
 from matplotlib.ticker import MultipleLocator
-from vtk.util.numpy_support import vtk_to_numpy
-
-from plot_points import read
 
 CASES = {
     "explicit": "explicit (momentum)",
@@ -38,15 +29,12 @@ ENERGIES = {
 
 
 def draw_motion(directory, out):
-    records = ElementTree.parse(directory / "particles.pvd").findall(".//DataSet")
     figure, panels = plt.subplots(1, 4, figsize=(13, 3.6), sharey=True)
     for axes, time, letter in zip(panels, (25, 75, 100, 150), "abcd"):
-        record = min(records, key=lambda r: abs(float(r.get("timestep")) - time))
-        points = read(directory / record.get("file"))
-        x = vtk_to_numpy(points.GetPoints().GetData())
-        body = vtk_to_numpy(points.GetPointData().GetArray("body"))
-        axes.scatter(x[:, 0], x[:, 1], c=body, s=3, cmap="coolwarm")
-        axes.set_title(f"({letter}) t = {float(record.get('timestep')):.4g} s")
+        time, points = results.nearest_picture(directory, time)
+        x = points.places
+        axes.scatter(x[:, 0], x[:, 1], c=points["body"], s=3, cmap="coolwarm")
+        axes.set_title(f"({letter}) t = {time:.4g} s")
         axes.set_aspect("equal")
         for axis in (axes.xaxis, axes.yaxis):
             axis.set_major_locator(MultipleLocator(0.5))
@@ -60,12 +48,10 @@ def draw_motion(directory, out):
 def draw_energy(study, out):
     figure, panels = plt.subplots(2, 2, figsize=(10, 7), sharex=True, sharey=True)
     for axes, (case, title), letter in zip(panels.flat, CASES.items(), "abcd"):
-        with open(study / case / "history.csv", newline="") as file:
-            rows = list(csv.DictReader(file))
-        time = [float(row["time"]) for row in rows]
+        history = results.history(study / case)
         for column, (label, color, line) in ENERGIES.items():
-            values = [1e6 * float(row[column]) for row in rows]
-            axes.plot(time, values, line, color=color, label=label, linewidth=1.2)
+            values = 1e6 * history[column]
+            axes.plot(history["time"], values, line, color=color, label=label, linewidth=1.2)
         axes.set_title(f"({letter}) {title}")
         axes.grid(alpha=0.3)
     for axes in panels[1]:
@@ -78,7 +64,10 @@ def draw_energy(study, out):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 4:
-        sys.exit(__doc__)
-    draw_motion(Path(sys.argv[1]), sys.argv[3])
-    draw_energy(Path(sys.argv[2]), sys.argv[3])
+    parser = results.Parser(__doc__)
+    parser.add_argument("run", type=Path, help="output directory of prm/disks.prm")
+    parser.add_argument("study", type=Path, help="that of prm/studies/disks_newton_cg.prm")
+    parser.add_argument("out", help="what the names of the pictures begin with")
+    arguments = parser.parse_args()
+    draw_motion(arguments.run, arguments.out)
+    draw_energy(arguments.study, arguments.out)

@@ -3,37 +3,25 @@
 
     build/release/impm_dealii prm/extreme/footing.prm
     contrib/footing_figure.py output/footing doc/figures/footing.png
-
-Needs Debian's python3-vtk9 and python3-matplotlib.
 """
 
-import sys
-import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
-import matplotlib
-
-matplotlib.use("Agg")
+import results
 import matplotlib.pyplot as plt
 import numpy as np
-import vtk
 from matplotlib.collections import PatchCollection
 from matplotlib.colors import LogNorm
 from matplotlib.patches import Rectangle
-from vtk.util.numpy_support import vtk_to_numpy
 
 top = 5
 
 
 def main(directory, picture):
-    record = ElementTree.parse(directory / "particles.pvd").findall(".//DataSet")[-1]
-    reader = vtk.vtkXMLUnstructuredGridReader()
-    reader.SetFileName(str(directory / record.get("file")))
-    reader.Update()
-    points = reader.GetOutput()
-    places = vtk_to_numpy(points.GetPoints().GetData())[:, :2] - [0, top]
-    strain = vtk_to_numpy(points.GetPointData().GetArray("equivalent_plastic_strain"))
-    size = vtk_to_numpy(points.GetPointData().GetArray("volume")) ** 0.5
+    points = results.last_picture(directory)
+    places = points.places[:, :2] - [0, top]
+    strain = points["equivalent_plastic_strain"]
+    size = points["volume"] ** 0.5
 
     figure, axes = plt.subplots(figsize=(9, 4.4), constrained_layout=True)
     drawn = PatchCollection(
@@ -59,6 +47,8 @@ def main(directory, picture):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 3:
-        sys.exit(__doc__)
-    main(Path(sys.argv[1]), sys.argv[2])
+    parser = results.Parser(__doc__)
+    parser.add_argument("run", type=Path, help="output directory")
+    parser.add_argument("picture", type=results.picture_file, metavar="FILE.png")
+    arguments = parser.parse_args()
+    main(arguments.run, arguments.picture)

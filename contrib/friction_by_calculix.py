@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Finite elements of another code for two scenes with friction: the ring of
 prm/contact/ring_compression.prm and the billet of prm/contact/upsetting.prm,
 by CalculiX (Debian: calculix-ccx), quadratic axisymmetric elements.
@@ -13,8 +13,9 @@ the curve: m, N.
 
 import pathlib
 import subprocess
-import sys
 import tempfile
+
+import results
 
 # Inner and outer radius, half of the height, travel; elements across and up;
 # Young's modulus, Poisson's ratio, yield stress, hardening; names of columns.
@@ -138,7 +139,11 @@ def curve(scene, text):
 
 
 def main():
-    scene, friction = sys.argv[1], float(sys.argv[2])
+    parser = results.Parser(__doc__)
+    parser.add_argument("scene", choices=SCENES)
+    parser.add_argument("friction", type=float, help="coefficient")
+    arguments = parser.parse_args()
+    scene, friction = arguments.scene, arguments.friction
     with tempfile.TemporaryDirectory() as directory:
         path = pathlib.Path(directory) / "run"
         path.with_suffix(".inp").write_text(deck(scene, friction))

@@ -23,24 +23,16 @@ cells of the first run, which leaves out what oscillates within a cell; "fringes
 pattern itself, a cosine of s1 - s2, cell by cell. The picture has the fringes and the
 grids in the upper halves of the disks, and the differences of s1 - s2 in the lower ones.
 
-Without a FILE.png at the end it only measures. Needs Debian's python3-vtk9 and
-python3-matplotlib.
+Without a FILE.png at the end it only measures.
 """
 
-import sys
-import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
-import matplotlib
-
-matplotlib.use("Agg")
+import results
 import matplotlib.pyplot as plt
 import numpy
 from matplotlib.collections import LineCollection
 from matplotlib.tri import LinearTriInterpolator, Triangulation
-from vtk.util.numpy_support import vtk_to_numpy
-
-from plot_points import read
 
 FRAMES = (1.9, 4.8, 6.7)
 TRANSIT = 1e-6  # of a longitudinal wave through a disk (s)
@@ -49,28 +41,19 @@ CELL = 2e-4  # extent of the cells of the uniform grid, which begin at the origi
 FRINGES = 7  # the scene's 'Fringe number'
 
 
-def read_at(directory, series, time):
-    """Time and data set of the picture that is nearest to a time."""
-    records = ElementTree.parse(directory / series).findall(".//DataSet")
-    record = min(records, key=lambda r: abs(float(r.get("timestep")) - time))
-    return float(record.get("timestep")), read(directory / record.get("file"))
-
-
 class Frame:
     """The fields of the deformable points at a time, by rows and columns of points."""
 
     def __init__(self, directory, time):
-        self.time, points = read_at(directory, "particles.pvd", time)
+        self.time, points = results.nearest_picture(directory, time)
         self.data = {}
-        field = lambda name: vtk_to_numpy(points.GetPointData().GetArray(name))
-        taken = field("body") >= 0
-        place = vtk_to_numpy(points.GetPoints().GetData())[taken, :2]
-        place = place - field("displacement")[taken, :2]
+        taken = points["body"] >= 0
+        place = (points.places - points["displacement"])[taken, :2]
         spacing = numpy.diff(numpy.unique(place[:, 0].round(6))).min()
         column, row = ((place - place.min(axis=0)) / spacing).round().astype(int).T
         for name in ("principal_stress_difference", "photoelastic_fringe"):
             self.data[name] = numpy.full((row.max() + 1, column.max() + 1), numpy.nan)
-            self.data[name][row, column] = field(name)[taken]
+            self.data[name][row, column] = points[name][taken]
 
     def noise(self):
         """Of s1 - s2, relative: inside, everywhere."""
@@ -92,12 +75,10 @@ class Field:
     """s1 - s2 at the deformable points of a run, wherever they are."""
 
     def __init__(self, directory, time):
-        self.time, points = read_at(directory, "particles.pvd", time)
-        field = lambda name: vtk_to_numpy(points.GetPointData().GetArray(name))
-        taken = field("body") >= 0
-        place = vtk_to_numpy(points.GetPoints().GetData())[taken, :2]
-        self.place = (place - field("displacement")[taken, :2]).astype(float)
-        self.value = field("principal_stress_difference")[taken].astype(float)
+        self.time, points = results.nearest_picture(directory, time)
+        taken = points["body"] >= 0
+        self.place = (points.places - points["displacement"])[taken, :2].astype(float)
+        self.value = points["principal_stress_difference"][taken].astype(float)
 
     def at(self, places):
         """Linear between the points, of the nearest one beyond them."""
@@ -135,19 +116,11 @@ def relative(difference, reference, weight=1.0):
 
 def edges_of(directory, time):
     """The edges of the cells of the grid."""
-    grid = read_at(directory, "grid.pvd", time)[1]
-    places = vtk_to_numpy(grid.GetPoints().GetData())[:, :2]
-    corners = [
-        [grid.GetCell(c).GetPointId(i) for i in range(4)]
-        for c in range(grid.GetNumberOfCells())
-        if grid.GetCell(c).GetNumberOfPoints() == 4
-    ]
-    return [places[ids + ids[:1]] for ids in corners]
+    cells = results.nearest_picture(directory, time, "grid")[1].cells()[:, :, :2]
+    return list(cells[:, [0, 1, 2, 3, 0]])
 
 
-def differences(*arguments):
-    picture = arguments[-1] if arguments[-1].endswith(".png") else None
-    first, *others = map(Path, arguments[: len(arguments) - bool(picture)])
+def differences(picture, first, *others):
     panels = []
     print(
         f"{'run':20} {'time':>6} {'points':>8} {'largest (MPa)':>14}"
@@ -205,11 +178,7 @@ def differences(*arguments):
     figure.savefig(picture, dpi=100)
 
 
-def main(*arguments):
-    if arguments[0] == "--difference":
-        return differences(*arguments[1:])
-    picture = arguments[-1] if arguments[-1].endswith(".png") else None
-    directories = [Path(name) for name in arguments[: len(arguments) - bool(picture)]]
+def compare(picture, *directories):
     strips = [(d, Frame(d, t * TRANSIT), t) for t in FRAMES for d in directories]
     # a run that ends early has no picture near the later times
     strips = [(d, f) for d, f, t in strips if abs(f.time / TRANSIT - t) < 0.1]
@@ -250,6 +219,13 @@ def main(*arguments):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) < 2:
-        sys.exit(__doc__)
-    main(*sys.argv[1:])
+    parser = results.Parser(__doc__)
+    parser.add_argument("--difference", action="store_true", help="from the first run")
+    parser.add_argument("runs", nargs="+", metavar="RUN", help="output directory")
+    parser.add_argument("picture", nargs="?", metavar="FILE.png")
+    arguments = parser.parse_args()
+    names = arguments.runs
+    picture = names.pop() if names[-1].endswith(".png") else None
+    if not names:
+        parser.error("no run is named")
+    (differences if arguments.difference else compare)(picture, *map(Path, names))

@@ -6,7 +6,7 @@ in current coordinates, and a third direction of the other), and checks them: th
 derivation with sympy, the expressions against finite differences of the motion
 alone (with many digits), and that the files have them.
 
-usage: contrib/manufactured_solutions.py
+    contrib/manufactured_solutions.py
 
 The law is the neo-Hookean one, P = G (F - F^-T) + lambda ln J F^-T, and the
 force per mass is b = d2x/dt2 - Div P / rho, all per initial volume.
@@ -37,6 +37,10 @@ import re
 import sys
 import textwrap
 from pathlib import Path
+
+import results
+
+results.Parser(__doc__).parse_args()  # before modules that few have
 
 import mpmath
 import sympy

@@ -1,20 +1,16 @@
 #!/usr/bin/python3
 """Draws what one cell of each law answers: the scenes of one cell in prm/materials.
 
-usage: contrib/materials_figure.py build/release/impm_dealii doc/figures/materials.png
+    contrib/materials_figure.py build/release/impm_dealii doc/figures/materials.png
 
-Needs Debian's python3-matplotlib. Takes ten seconds.
+Takes ten seconds.
 """
 
-import csv
 import subprocess
-import sys
 import tempfile
 from pathlib import Path
 
-import matplotlib
-
-matplotlib.use("Agg")
+import results
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -50,16 +46,16 @@ def run(program, scene, overrides=(), plane=False):
                  [Path(directory) / "history.csv"])
         runs = {}
         for name in files:
-            with open(name) as file:
-                rows = list(csv.DictReader(file))
-            runs[name.parent.name] = {
-                column: np.array([float(row[column]) for row in rows])
-                for column in ("time", "along", "across", "stretch")}
+            runs[name.parent.name] = results.history(name.parent)
         return runs if is_study else next(iter(runs.values()))
 
 
 def main():
-    program, picture = sys.argv[1:]
+    parser = results.Parser(__doc__)
+    parser.add_argument("program", type=Path)
+    parser.add_argument("picture", type=results.picture_file, metavar="FILE.png")
+    arguments = parser.parse_args()
+    program, picture = arguments.program, arguments.picture
     figure, panels = plt.subplots(2, 3, figsize=(13, 7), constrained_layout=True)
     hardening, rubber, relaxation, failure, soil, lamina = panels.flat
 
@@ -105,6 +101,4 @@ def main():
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 3:
-        sys.exit(__doc__)
     main()

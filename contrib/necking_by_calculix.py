@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Finite elements of another code for prm/extreme/necking_bar.prm, the round bar
 that necks, by CalculiX (Debian: calculix-ccx), quadratic axisymmetric elements.
 
@@ -12,8 +12,9 @@ m, N.
 import math
 import pathlib
 import subprocess
-import sys
 import tempfile
+
+import results
 
 RADIUS, LENGTH, ELONGATION = 6.413, 26.667, 7.0
 N_STEPS = 140
@@ -85,7 +86,9 @@ def curve(text):
 
 
 def main():
-    n_across = int(sys.argv[1])
+    parser = results.Parser(__doc__)
+    parser.add_argument("elements", type=int, help="across the bar")
+    n_across = parser.parse_args().elements
     with tempfile.TemporaryDirectory() as directory:
         path = pathlib.Path(directory) / "run"
         path.with_suffix(".inp").write_text(deck(n_across))

@@ -7,9 +7,16 @@ Takes the numbers of quadrilaterals around the hole and away from it.
 """
 
 import math
-import sys
 
-n_around, n_away = (int(word) for word in sys.argv[1:])
+import results
+
+parser = results.Parser(__doc__)
+parser.add_argument("around", type=int)
+parser.add_argument("away", type=int)
+arguments = parser.parse_args()
+n_around, n_away = arguments.around, arguments.away
+if n_around < 1 or n_away < 1:
+    parser.error("both numbers are to be at least 1")
 
 
 def place(i, j):

@@ -4,23 +4,16 @@ stress at a point over epsilon, a curve for each gamma, a row of diagrams for ea
 time step and a column for each h (Sulsky & Kaul 2004, figures 6 to 8).
 
     contrib/plot_bar_parameters.py output/bar_plastic_parameters diagram.png
-
-Needs Debian's python3-matplotlib.
 """
 
-import csv
-import sys
 from pathlib import Path
 
-import matplotlib
-
-matplotlib.use("Agg")
+import results
 import matplotlib.pyplot as plt
 
 
 def main(study, picture):
-    with open(Path(study) / "study.csv", newline="") as file:
-        rows = list(csv.DictReader(file))
+    rows = results.Study(study).rows
 
     def labels(name):
         return list(dict.fromkeys(row[name] for row in rows))
@@ -55,6 +48,8 @@ def main(study, picture):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 3:
-        sys.exit(__doc__)
-    main(*sys.argv[1:])
+    parser = results.Parser(__doc__)
+    parser.add_argument("study", type=Path, help="output directory of the study")
+    parser.add_argument("picture", type=results.picture_file, metavar="FILE.png")
+    arguments = parser.parse_args()
+    main(arguments.study, arguments.picture)

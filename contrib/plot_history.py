@@ -1,39 +1,32 @@
 #!/usr/bin/python3
 """Draws a column of the history of several runs over another column.
 
-usage: contrib/plot_history.py X Y FILE.png OUTPUT_DIRECTORY...
-
-Needs Debian's python3-matplotlib.
+    contrib/plot_history.py platen_displacement platen_load load.png output/upsetting
 """
 
-import csv
-import sys
 from pathlib import Path
 
-import matplotlib
-
-matplotlib.use("Agg")
+import results
 import matplotlib.pyplot as plt
 
 
-def main(x, y, picture, *directories):
+def main():
+    parser = results.Parser(__doc__)
+    parser.add_argument("x", help="column of history.csv")
+    parser.add_argument("y", help="column of history.csv")
+    parser.add_argument("picture", type=results.picture_file, help="FILE.png, .svg or .pdf")
+    parser.add_argument("runs", nargs="+", type=Path, help="output directories")
+    arguments = parser.parse_args()
     figure, axes = plt.subplots(figsize=(8, 5))
-    for directory in directories:
-        with open(Path(directory) / "history.csv", newline="") as file:
-            rows = list(csv.DictReader(file))
-        axes.plot(
-            [float(row[x]) for row in rows],
-            [float(row[y]) for row in rows],
-            label=Path(directory).name,
-        )
-    axes.set_xlabel(x)
-    axes.set_ylabel(y)
+    for directory in arguments.runs:
+        history = results.history(directory)
+        axes.plot(history[arguments.x], history[arguments.y], label=directory.name)
+    axes.set_xlabel(arguments.x)
+    axes.set_ylabel(arguments.y)
     axes.grid(alpha=0.3)
     axes.legend()
-    figure.savefig(picture, dpi=110, bbox_inches="tight")
+    figure.savefig(arguments.picture, dpi=110, bbox_inches="tight")
 
 
 if __name__ == "__main__":
-    if len(sys.argv) < 5:
-        sys.exit(__doc__)
-    main(*sys.argv[1:])
+    main()

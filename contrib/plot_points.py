@@ -1,69 +1,170 @@
 #!/usr/bin/python3
-"""Draws the points of the last picture of each run, coloured by a field.
+"""Draws the points of the last picture of each run, coloured by a field; of vectors and
+tensors it is the size.
 
-usage: contrib/plot_points.py OUTPUT_DIRECTORY... FIELD FILE.png
+    contrib/plot_points.py output/upsetting equivalent_plastic_strain strain.png
 
-Needs Debian's python3-vtk9 and python3-matplotlib.
+With the fields initial_domain and deformation_gradient in the pictures they are drawn as
+their boxes, carried along by the deformation, else as discs of their size.
 """
 
-import sys
-import xml.etree.ElementTree as ElementTree
+import itertools
 from pathlib import Path
 
-import matplotlib
-
-matplotlib.use("Agg")
+import results
 import matplotlib.pyplot as plt
-import vtk
-from vtk.util.numpy_support import vtk_to_numpy
+import numpy
+from matplotlib.cm import ScalarMappable
+from matplotlib.collections import EllipseCollection, PolyCollection
+from matplotlib.colors import Normalize
+
+CORNERS = {
+    2: numpy.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) / 2,
+    3: numpy.array(list(itertools.product((-1, 1), repeat=3))) / 2,
+}
+# Of a cube, counter-clockwise from outside.
+FACES = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
+MOST_BOXES = 300_000
+MAP = "viridis"
 
 
-def read(path):
-    reader = (
-        vtk.vtkXMLPUnstructuredGridReader()
-        if path.suffix == ".pvtu"
-        else vtk.vtkXMLUnstructuredGridReader()
-    )
-    reader.SetFileName(str(path))
-    reader.Update()
-    return reader.GetOutput()
+def is_rigid(points):
+    """Of the points: those of rigid bodies carry nothing but their place."""
+    return points["body"] < 0 if "body" in points else numpy.zeros(len(points.places), bool)
 
 
-def main(*arguments):
-    *directories, field, picture = arguments
+def values_of(points, field):
+    """What points are coloured by, not a number where they have none."""
+    return numpy.where(is_rigid(points), numpy.nan, points.size_of(field))
+
+
+def boxes(points, dim):
+    """Corners (points x 2^dim x dim) of the boxes, nothing if they are not known."""
+    if "initial_domain" not in points or "deformation_gradient" not in points:
+        return None
+    rigid = is_rigid(points)
+    F = numpy.where(rigid[:, None, None], numpy.eye(3), points["deformation_gradient"])
+    edges = points["initial_domain"]
+    if not rigid.all():
+        edges = numpy.where(rigid[:, None], numpy.median(edges[~rigid], axis=0), edges)
+    shapes = (CORNERS[dim] * edges[:, None, :dim]) @ F[:, :dim, :dim].transpose(0, 2, 1)
+    return points.places[:, None, :dim] + shapes
+
+
+def diameters(points, dim, is_axisymmetric):
+    """Of discs and balls that are as large as the points."""
+    if "volume" not in points:
+        spans = numpy.ptp(points.places[:, :dim], axis=0)
+        return numpy.full(len(points.places), (spans.prod() / len(points.places)) ** (1 / dim))
+    volume = points["volume"]
+    if is_axisymmetric:
+        volume = volume / (2 * numpy.pi * points.places[:, 0])
+    if (volume > 0).any():
+        volume = numpy.where(volume > 0, volume, numpy.median(volume[volume > 0]))
+    return 2 * (volume / numpy.pi) ** 0.5 if dim == 2 else (6 * volume / numpy.pi) ** (1 / 3)
+
+
+def project(places):
+    """Onto the plane of the picture, and the distance towards the eye."""
+    eye = numpy.array([-0.45, -0.7, 0.55])
+    right = numpy.cross([0, 0, 1], eye)
+    up = numpy.cross(eye, right)
+    axes = numpy.array([a / numpy.linalg.norm(a) for a in (right, up, eye)])
+    places = places @ axes.T
+    return places[..., :2], places[..., 2]
+
+
+def visible_faces(corners):
+    """Of boxes in space, from far to near: polygons, brightness, number of the box."""
+    faces = corners[:, FACES]
+    flat, depth = project(faces)
+    normal = numpy.cross(faces[:, :, 2] - faces[:, :, 0], faces[:, :, 3] - faces[:, :, 1])
+    normal /= numpy.maximum(numpy.linalg.norm(normal, axis=-1, keepdims=True), 1e-300)
+    towards = project(normal)[1]
+    box, face = numpy.nonzero(towards > 0)
+    order = numpy.argsort(depth.mean(axis=-1)[box, face])
+    box, face = box[order], face[order]
+    brightness = 0.72 + 0.28 * normal[box, face, 2]
+    return flat[box, face], brightness, box
+
+
+def draw(axes, points, values, norm, dim=2, is_axisymmetric=False, grid=None):
+    """Of points as results.Data; behind them the cells of a grid in the plane."""
+    colours = plt.get_cmap(MAP)(norm(values))
+    colours[is_rigid(points)] = (0.5, 0.5, 0.5, 1)
+    corners = boxes(points, dim) if len(values) <= MOST_BOXES else None
+    if grid is not None and dim == 2:
+        cells = PolyCollection(
+            grid.cells()[:, :, :2], facecolor="none", edgecolor="gray", linewidth=0.3,
+            alpha=0.6, rasterized=True,
+        )
+        axes.add_collection(cells, autolim=False)
+    if corners is None:
+        places, order = points.places[:, :2], slice(None)
+        if dim == 3:
+            places, depth = project(points.places)
+            order = numpy.argsort(depth)
+        size = diameters(points, dim, is_axisymmetric)[order]
+        drawn = EllipseCollection(
+            size, size, 0, units="xy", offsets=places[order], transOffset=axes.transData,
+            facecolor=colours[order], rasterized=True, linewidth=0.3 * (dim == 3),
+            edgecolor=(0, 0, 0, 0.3),
+        )
+        margin = size.max() / 2
+        axes.update_datalim([places.min(axis=0) - margin, places.max(axis=0) + margin])
+        axes.add_collection(drawn, autolim=False)
+    else:
+        polygons = corners
+        if dim == 3:
+            polygons, brightness, box = visible_faces(corners)
+            colours = colours[box]
+            colours[:, :3] *= brightness[:, None]
+        # edges of their own colour close the seams
+        drawn = PolyCollection(
+            polygons, facecolor=colours, edgecolor=colours, linewidth=0.2, rasterized=True
+        )
+        axes.add_collection(drawn)
+    axes.autoscale_view()
+    axes.set_aspect("equal")
+    if dim == 3:
+        axes.set_axis_off()
+
+
+def colour_bar(figure, axes, norm, label, **options):
+    figure.colorbar(ScalarMappable(norm, MAP), ax=axes, label=label, panchor=False, **options)
+
+
+def limits(all_values):
+    """A common scale; what is not finite does not count."""
+    values = numpy.concatenate(list(all_values))
+    values = values[numpy.isfinite(values)]
+    return Normalize(values.min(), values.max()) if len(values) else Normalize(0, 0)
+
+
+def main():
+    parser = results.Parser(__doc__)
+    parser.add_argument("runs", nargs="+", type=Path, help="output directories")
+    parser.add_argument("field", help="of the points")
+    parser.add_argument("picture", type=results.picture_file, help="FILE.png, .svg or .pdf")
+    arguments = parser.parse_args()
     runs = []
-    for directory in map(Path, directories):
-        record = ElementTree.parse(directory / "particles.pvd").findall(".//DataSet")[-1]
-        points = read(directory / record.get("file"))
-        values = vtk_to_numpy(points.GetPointData().GetArray(field))
-        if values.ndim > 1:
-            values = (values**2).sum(axis=1) ** 0.5
-        places = vtk_to_numpy(points.GetPoints().GetData())
-        runs.append((directory.name, places, values, float(record.get("timestep"))))
-    limits = min(run[2].min() for run in runs), max(run[2].max() for run in runs)
+    for directory in arguments.runs:
+        run = results.Run(directory)
+        time, path = results.pictures(directory)[-1]
+        points = results.Data(path)
+        runs.append((run, time, points, values_of(points, arguments.field)))
+    norm = limits(values for _, _, _, values in runs)
     figure, panels = plt.subplots(
         len(runs), figsize=(9, 3.4 * len(runs)), squeeze=False, constrained_layout=True
     )
-    for axes, (name, places, values, time) in zip(panels[:, 0], runs):
-        # The more points, the smaller.
-        drawn = axes.scatter(
-            places[:, 0],
-            places[:, 1],
-            c=values,
-            s=max(1, 5400 / len(values)),
-            cmap="viridis",
-            vmin=limits[0],
-            vmax=limits[1],
-        )
-        axes.set_aspect("equal")
-        axes.set_xlabel("x or r (m)")
-        axes.set_ylabel("y or z (m)")
-        axes.set_title(f"{name}, t = {time:.5g} s")
-    figure.colorbar(drawn, ax=panels, label=field)
-    figure.savefig(picture, dpi=90)
+    for axes, (run, time, points, values) in zip(panels[:, 0], runs):
+        draw(axes, points, values, norm, run.dim, run.is_axisymmetric)
+        axes.set_xlabel(run.label("position", "r" if run.is_axisymmetric else "x"))
+        axes.set_ylabel(run.label("position", "z" if run.is_axisymmetric else "y"))
+        axes.set_title(f"{run.name}, t = {time:.5g} {run.unit('time')}")
+    colour_bar(figure, panels, norm, runs[0][0].label(arguments.field))
+    figure.savefig(arguments.picture, dpi=90)
 
 
 if __name__ == "__main__":
-    if len(sys.argv) < 4:
-        sys.exit(__doc__)
-    main(*sys.argv[1:])
+    main()

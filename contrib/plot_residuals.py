@@ -6,16 +6,11 @@ falls quadratically.
 
     impm_dealii SCENE --verbose > h_1e-5.log
     contrib/plot_residuals.py diagram.png h_1e-5.log h_1e-4.log
-
-Needs Debian's python3-matplotlib.
 """
 
-import sys
 from pathlib import Path
 
-import matplotlib
-
-matplotlib.use("Agg")
+import results
 import matplotlib.pyplot as plt
 
 
@@ -46,6 +41,8 @@ def is_number(word):
 def main(picture, *paths):
     logs = {Path(path).stem: read(path) for path in paths}
     common = set.intersection(*(set(steps) for steps in logs.values()))
+    if not common:
+        raise results.Refusal("the logs have no step with residuals in common")
     shortest = {n: min(len(steps[n]) for steps in logs.values()) for n in common}
     chosen = sorted(sorted(common, key=lambda n: (-shortest[n], n))[:5])
     columns = min(3, len(logs))
@@ -70,6 +67,8 @@ def main(picture, *paths):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) < 3:
-        sys.exit(__doc__)
-    main(*sys.argv[1:])
+    parser = results.Parser(__doc__)
+    parser.add_argument("picture", type=results.picture_file, metavar="FILE.png")
+    parser.add_argument("logs", nargs="+", type=Path, metavar="LOG")
+    arguments = parser.parse_args()
+    main(arguments.picture, *arguments.logs)

@@ -6,20 +6,13 @@ combination of the lists that are not the order's, as PNG and SVG.
 
     contrib/plot_study.py output/column
     contrib/plot_study.py output/column --errors stress --out doc/column
-
-Needs Debian's python3-matplotlib.
 """
 
-import argparse
-import csv
-import json
 from collections import defaultdict
 from pathlib import Path
 
+import results
 import matplotlib
-
-matplotlib.use("Agg")
-matplotlib.rcParams["svg.hashsalt"] = "impm_dealii"
 import matplotlib.pyplot as plt
 from matplotlib.ticker import (
     AutoLocator,
@@ -32,24 +25,13 @@ from matplotlib.ticker import (
 MARKERS = "osD^vP*X<>"
 
 
-def read(directory):
-    """The description of the study, its rows, and the names of its errors."""
-    with open(directory / "study.json") as file:
-        study = json.load(file)
-    with open(directory / "study.csv", newline="") as file:
-        reader = csv.DictReader(file)
-        rows = list(reader)
-        errors = [n[6:] for n in reader.fieldnames if n.startswith("error_")]
-    return study, rows, errors
-
-
-def lines_of(study, rows):
+def lines_of(about, rows):
     """Rows by the labels of the lists that do not go along a line."""
     other = [
         entry["name"]
-        for entry in study["lists"]
-        if entry["name"] != study["order_along"]
-        and not (study["paired"] and entry["has_sizes"])
+        for entry in about["lists"]
+        if entry["name"] != about["order_along"]
+        and not (about["paired"] and entry["has_sizes"])
     ]
     lines = defaultdict(list)
     for row in rows:
@@ -123,8 +105,9 @@ def draw_slopes(axes, all_points):
         )
 
 
-def draw(study, lines, error, out):
-    along = study["order_along"]
+def diagram(about, lines, error, title=None):
+    """The pair of diagrams of a reference."""
+    along = about["order_along"]
     has_sizes = bool(along)
     figure, both = plt.subplots(
         1, 1 + has_sizes, figsize=(6 + 5 * has_sizes, 4.8), squeeze=False, sharey=True
@@ -160,7 +143,7 @@ def draw(study, lines, error, out):
     if has_sizes:
         draw_slopes(over_size, size_points)
         over_size.set_xlabel(
-            next(e["size_name"] for e in study["lists"] if e["name"] == along)
+            next(e["size_name"] for e in about["lists"] if e["name"] == along)
         )
         panels.append(over_size)
     for axes in panels:
@@ -169,7 +152,8 @@ def draw(study, lines, error, out):
         tidy(axes)
     if has_sizes:
         mark_sizes(over_size, {x for x, _ in size_points})
-    figure.suptitle(study["title"] or study["study"])
+    if title:
+        figure.suptitle(title)
     handles, labels = [], []
     for axes in panels:
         for handle, label in zip(*axes.get_legend_handles_labels()):
@@ -180,8 +164,12 @@ def draw(study, lines, error, out):
     figure.legend(
         handles, labels, loc="center left", bbox_to_anchor=(1, 0.5), frameon=False
     )
+    return figure
+
+
+def save(figure, out):
     for ending in ("png", "svg"):
-        name = f"{out}_{error.replace(' ', '_')}.{ending}"
+        name = f"{out}.{ending}"
         # Without the date, the same study gives the same file.
         metadata = {"Date": None} if ending == "svg" else None
         figure.savefig(name, dpi=130, bbox_inches="tight", metadata=metadata)
@@ -190,23 +178,24 @@ def draw(study, lines, error, out):
 
 
 def main():
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    matplotlib.rcParams["svg.hashsalt"] = "impm_dealii"
+    parser = results.Parser(__doc__)
     parser.add_argument("study", type=Path, help="output directory of a study")
     parser.add_argument("--errors", help="names of references, between commas")
     parser.add_argument("--out", help="what the names of the pictures begin with")
     arguments = parser.parse_args()
-    study, rows, errors = read(arguments.study)
-    wanted = arguments.errors.split(",") if arguments.errors else errors
+    study = results.Study(arguments.study)
+    wanted = arguments.errors.split(",") if arguments.errors else study.errors
     for name in wanted:
-        if name not in errors:
-            parser.error(f"found error '{name}', allowed are: {', '.join(errors)}")
+        if name not in study.errors:
+            parser.error(f"found error '{name}', allowed are: {', '.join(study.errors)}")
     if not wanted:
         parser.error("the scene of this study has no Reference, hence no error")
-    lines = lines_of(study, rows)
+    lines = lines_of(study.about, study.rows)
+    out = arguments.out or arguments.study / "error"
     for name in wanted:
-        draw(study, lines, name, arguments.out or arguments.study / "error")
+        figure = diagram(study.about, lines, name, study.title)
+        save(figure, f"{out}_{name.replace(' ', '_')}")
 
 
 if __name__ == "__main__":

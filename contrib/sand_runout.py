@@ -1,21 +1,17 @@
 #!/usr/bin/python3
 """How far a column of sand has run out, by the last picture of each run.
 
-usage: contrib/sand_runout.py OUTPUT_DIRECTORY... (of prm/materials/sand_column.prm or its study)
+    contrib/sand_runout.py output/sand_column     # of prm/materials/sand_column.prm
 
 Prints, over the width of the column at the start, where the straight part of the surface meets
 the floor: a line through the highest points, in columns 25 mm wide, between 15 and 75 % of the
-top. Beside it how far 98 % of the sand and its last point have come. Needs Debian's
-python3-vtk9 and python3-matplotlib.
+top. Beside it how far 98 % of the sand and its last point have come.
 """
 
-import sys
-import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
+import results
 import numpy
-from plot_points import read
-from vtk.util.numpy_support import vtk_to_numpy
 
 WIDTH = 0.1  # of the column (m)
 COLUMN = 0.025  # (m)
@@ -31,14 +27,14 @@ def surface(places):
     )
 
 
-def main(*directories):
+def main(directories):
     print("run                   line  98 %  last")
-    for directory in map(Path, directories):
-        record = ElementTree.parse(directory / "particles.pvd").findall(".//DataSet")[-1]
-        points = read(directory / record.get("file"))
-        places = vtk_to_numpy(points.GetPoints().GetData())
+    for directory in directories:
+        places = results.last_picture(directory).places
         x, top = surface(places)
         straight = (top > 0.15 * top.max()) & (top < 0.75 * top.max())
+        if straight.sum() < 2:
+            raise results.Refusal(f"the sand of '{directory}' has no slope yet")
         slope, height = numpy.polyfit(x[straight], top[straight], 1)
         ways = [-height / slope, numpy.quantile(places[:, 0], 0.98), places[:, 0].max()]
         print(
@@ -48,6 +44,6 @@ def main(*directories):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) < 2:
-        sys.exit(__doc__)
-    main(*sys.argv[1:])
+    parser = results.Parser(__doc__)
+    parser.add_argument("runs", nargs="+", type=Path, metavar="RUN", help="output directory")
+    main(parser.parse_args().runs)

@@ -2,27 +2,22 @@
 """Runs the upsetting on grids of 1, 0.5 and 0.25 mm and prints, as Markdown,
 load and radius at 15, 30, 45 and 60 % beside what they cost.
 
-usage: contrib/upsetting_table.py [SCENE [CELLS IN r AND z AT 1 mm [OVERRIDE...]]]
-
     contrib/upsetting_table.py upsetting 24 15
     contrib/upsetting_table.py upsetting_rigid_points 24 18 "Time/Time step=1e-5"
 """
 
-import csv
-import json
 import subprocess
-import sys
-from pathlib import Path
 
-root = Path(__file__).resolve().parent.parent
+import results
+
+root = results.ROOT
 marks = {"15 %": 0.00225, "30 %": 0.0045, "45 %": 0.00675, "60 %": 0.009}
 
 
-def interpolate(rows, column, travel):
+def interpolate(history, column, travel):
     """Linear in the travel of the platen; the last row if it is the end."""
     before = None
-    for row in rows:
-        here = float(row["platen_displacement"]), float(row[column])
+    for here in zip(history["platen_displacement"], history[column]):
         if here[0] >= travel * (1 - 1e-9):
             if before is None:
                 return here[1]
@@ -32,16 +27,16 @@ def interpolate(rows, column, travel):
     return float("nan")
 
 
-def main(scene="upsetting", cells_r="24", cells_z="15", *overrides):
+def main(scene, cells_r, cells_z, overrides):
     heads = [f"{mark}: kN, mm" for mark in marks]
     print("| grid | " + " | ".join(heads) + " | steps | Newton a step | cuts | seconds |")
     print("|---" * (len(heads) + 5) + "|")
     for factor, name in ((1, "1 mm"), (2, "0.5 mm"), (4, "0.25 mm")):
         output = root / "output" / f"table_{scene}_{factor}"
-        cells = f"{int(cells_r) * factor}, {int(cells_z) * factor}"
+        cells = f"{cells_r * factor}, {cells_z * factor}"
         subprocess.run(
             [
-                root / "build/release/impm_dealii",
+                results.PROGRAM,
                 root / f"prm/{scene}.prm",
                 "--quiet",
                 "--output",
@@ -54,13 +49,11 @@ def main(scene="upsetting", cells_r="24", cells_z="15", *overrides):
             ],
             check=True,
         )
-        with open(output / "history.csv", newline="") as file:
-            rows = list(csv.DictReader(file))
-        with open(output / "summary.json") as file:
-            summary = json.load(file)
+        history = results.history(output)
+        summary = results.Run(output).summary
         figures = [
-            f"{interpolate(rows, 'platen_load', travel) / 1e3:.1f}, "
-            f"{interpolate(rows, 'largest_radius', travel) * 1e3:.2f}"
+            f"{interpolate(history, 'platen_load', travel) / 1e3:.1f}, "
+            f"{interpolate(history, 'largest_radius', travel) * 1e3:.2f}"
             for travel in marks.values()
         ]
         print(
@@ -74,4 +67,9 @@ def main(scene="upsetting", cells_r="24", cells_z="15", *overrides):
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    parser = results.Parser(__doc__)
+    parser.add_argument("scene", nargs="?", default="upsetting", help="of prm, without .prm")
+    parser.add_argument("cells_r", nargs="?", type=int, default=24, help="in r, of 1 mm")
+    parser.add_argument("cells_z", nargs="?", type=int, default=15, help="in z, of 1 mm")
+    parser.add_argument("overrides", nargs="*", metavar="OVERRIDE", help="as for --set")
+    main(**vars(parser.parse_args()))

@@ -11,7 +11,8 @@ from functools import cache
 import numpy
 
 from figures.page import HOLE, Page, numbers_in
-from figures.sources import ROOT, Failed, NotRun, Source, read_csv
+from figures.sources import Failed, NotRun, Source
+from results import ROOT, read_numbers, read_rows
 
 DATA = ROOT / "doc/data/figures"
 
@@ -40,9 +41,8 @@ def flat(values):
 
 def curve(path):
     """The columns of a CSV file below prm/ or doc/, by name."""
-    path = next(folder / path for folder in (ROOT / "prm", ROOT) if (folder / path).exists())
-    rows = read_csv(path)
-    return {key: numpy.array([float(row[key]) for row in rows]) for key in rows[0]}
+    return read_numbers(next(folder / path for folder in (ROOT / "prm", ROOT)
+                             if (folder / path).exists()))
 
 
 FUNCTIONS = {
@@ -55,7 +55,7 @@ FUNCTIONS = {
     "given": Kind(math.nan, "given"),
     "percent": lambda *values: [100 * value for value in flat(values)],
     "curve": curve,
-    "table": lambda path: read_csv(ROOT / path),
+    "table": lambda path: read_rows(ROOT / path)[0],
     "flat": flat,
     "mean": lambda values: float(numpy.mean(values)),
     "ln": math.log,
@@ -114,6 +114,8 @@ class Binding:
         if path.exists():
             with self._telling(f"{path.relative_to(ROOT)}: "):
                 self.data = tomllib.loads(path.read_text(encoding="utf-8"))
+        unknown = set(self.data) - {"text", "let", "sources", "table", "given"}
+        self.problems += [f"{path.name}: '{key}' is not known" for key in sorted(unknown)]
         self.sources = {}
         for source, entry in self.data.get("sources", {}).items():
             with self._telling():

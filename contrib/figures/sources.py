@@ -3,7 +3,6 @@
 Everything that a source leaves is in output/figures/<name>: `results`, `log.txt`, and
 `run.json` once it has gone to its end, so that it is not run again by the same program."""
 
-import csv
 import hashlib
 import json
 import re
@@ -14,10 +13,11 @@ import time
 from functools import cache, cached_property
 from pathlib import Path
 
+import results
+from results import PROGRAM, ROOT
+
 import numpy
 
-ROOT = Path(__file__).resolve().parents[2]
-PROGRAM = ROOT / "build/release/impm_dealii"
 KINDS = ("study", "scene", "command")
 ENTRIES = {*KINDS, "set", "ranks", "seconds"}
 
@@ -28,23 +28,6 @@ class NotRun(Exception):
 
 class Failed(Exception):
     """A source or an expression that gives no figure."""
-
-
-def read_csv(path):
-    with open(path, newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
-
-
-def as_file_name(label):
-    """As source/study/study.cc has it."""
-    name = ""
-    for c in label:
-        if c.isascii() and c.isalnum() or c in ".+-":
-            name += c
-        elif name and name[-1] != "-":
-            name += "-"
-    name = name.rstrip("-")
-    return "0" + name if name[:1] in ("", ".") else name
 
 
 class Names(dict):
@@ -67,15 +50,13 @@ class Run:
     @cached_property
     def summary(self):
         try:
-            return Names(json.loads((self.directory / "summary.json").read_text()))
+            return Names(results.read_json(self.directory / "summary.json"))
         except OSError:
             raise Failed(f"{self.directory.name}: {self._status or 'no summary.json'}") from None
 
     @cached_property
     def history(self):
-        rows = read_csv(self.directory / "history.csv")
-        return Names({key: numpy.array([float(row[key] or "nan") for row in rows])
-                      for key in rows[0]})
+        return Names(results.history(self.directory))
 
     @property
     def figure(self):
@@ -129,11 +110,8 @@ class Run:
     def off(self, column, reference, along, start=-numpy.inf, end=numpy.inf):
         """How far a column is off that of a file in prm/, or of another run, relative, from
         a place on: at worst, and in L2. As contrib/compare_curves.py has it."""
-        if isinstance(reference, Run):
-            known = reference.history
-        else:
-            rows = read_csv(ROOT / "prm" / reference)
-            known = {key: numpy.array([float(row[key]) for row in rows]) for key in rows[0]}
+        known = (reference.history if isinstance(reference, Run)
+                 else results.read_numbers(ROOT / "prm" / reference))
         x = self.history[along]
         counts = (x >= max(start, known[along][0]) * (1 - 1e-9)) & (
             x <= min(end, known[along][-1]) * (1 + 1e-9))
@@ -143,17 +121,11 @@ class Run:
                 numpy.sqrt(numpy.trapz(difference**2, x) / numpy.trapz(exact**2, x)))
 
 
-class Study:
+class Study(results.Study):
     def __init__(self, directory):
-        self.directory = directory
-        self.lists = [entry["name"]
-                      for entry in json.loads((directory / "study.json").read_text())["lists"]]
-        self.rows = read_csv(directory / "study.csv")
-        self.runs = [Run(self._directory(row), int(row["exit_code"]), row["status"],
+        super().__init__(directory)
+        self.runs = [Run(self.directory / self.name_of(row), int(row["exit_code"]), row["status"],
                          float(row["wall_seconds"] or "nan")) for row in self.rows]
-
-    def _directory(self, row):
-        return self.directory / "_".join(as_file_name(row[name]) for name in self.lists)
 
     def run(self, name):
         """By the name of its directory."""
@@ -190,9 +162,9 @@ class Output:
         self.directory = directory
         self.text = (directory / "log.txt").read_text(encoding="utf-8")
 
-    def run(self, path):
-        """One that the command made, by its directory."""
-        return Run(ROOT / path)
+    def run(self, path=""):
+        """One that the command made, by its directory: by default its own."""
+        return Run(ROOT / path if path else self.directory / "results")
 
     def find(self, pattern):
         """The numbers in the groups of a regular expression."""
@@ -230,7 +202,7 @@ class Source:
         self.file = words if self.kind != "command" else words.split()[0]
         folder = ROOT if self.kind == "command" or self.file.startswith("tests/") else ROOT / "prm"
         self.path = folder / self.file
-        if not self.path.exists():
+        if "/" in self.file and not self.path.exists():
             raise ValueError(f"source '{name}': there is no {self.path.relative_to(ROOT)}")
 
     @cached_property
@@ -243,9 +215,14 @@ class Source:
     def cost(self):
         return (self.seconds or 0) + sum(source.cost for source in self.needs)
 
-    @cached_property
+    @property
     def shown(self):
         """The command as one would type it."""
+        return self._filled(self.line).replace(f"{ROOT}/", "")
+
+    @cached_property
+    def line(self):
+        """The same with the names of other sources, which it goes by."""
         if self.kind == "command":
             return self.entry["command"]
         ranks = self.entry.get("ranks", 1)
@@ -258,7 +235,9 @@ class Source:
 
     @cached_property
     def directory(self):
-        key = hashlib.sha1(self.shown.encode()).hexdigest()[:6]
+        """Named by its command and those of the sources that it reads."""
+        line = re.sub(r"\{(\w+)\}", lambda m: self.others[m[1]].directory.name, self.line)
+        key = hashlib.sha1(line.encode()).hexdigest()[:6]
         return ROOT / "output/figures" / f"{Path(self.file).stem}-{key}"
 
     @property

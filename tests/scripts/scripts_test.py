@@ -59,6 +59,11 @@ def help():
     assert not silent, silent
 
 
+def figures():
+    """What recomputes the figures of the pages still fits them."""
+    call("check_figures", "--texts")
+
+
 def runs():
     """Makes the runs that the other tests look at."""
     shutil.rmtree(options.output, ignore_errors=True)
@@ -267,7 +272,7 @@ def paraview():
 
 
 parser = argparse.ArgumentParser(description=__doc__)
-parser.add_argument("test", choices=["help", "runs", "refusals", "plots", "report", "paraview"])
+parser.add_argument("test", choices=["help", "figures", "runs", "refusals", "plots", "report", "paraview"])
 for name in ("contrib", "scenes", "program", "output"):
     parser.add_argument("--" + name, type=Path, required=True)
 options = parser.parse_args()

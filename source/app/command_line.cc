@@ -48,9 +48,8 @@ impm_dealii ..., to be stopped by SIGUSR1.
                                "version",
                                "help,h"})
         add(flag, "");
-      for (const char *name : {"output,o", "print-parameters"})
-        add(name, options::value<std::string>());
-      for (const char *name : {"set", "file"})
+      add("print-parameters", options::value<std::string>());
+      for (const char *name : {"set", "output,o", "file"})
         add(name, options::value<std::vector<std::string>>());
       options::positional_options_description files;
       files.add("file", -1);
@@ -96,7 +95,7 @@ impm_dealii ..., to be stopped by SIGUSR1.
       {
         refuse("found '" + error.get_option_name() + "' twice");
       }
-    catch (const options::error_with_option_name &error)
+    catch (const options::error &error)
       {
         refuse(error.what());
       }
@@ -112,15 +111,16 @@ impm_dealii ..., to be stopped by SIGUSR1.
     };
 
     CommandLine line;
-    line.overrides        = texts("set");
-    line.output_directory = text("output");
-    line.check            = has("check");
-    line.study            = has("study");
-    line.restart          = has("restart");
-    line.listing          = text("print-parameters");
-    line.verbosity        = has("verbose") ? CommandLine::Verbosity::verbose :
-                            has("quiet")   ? CommandLine::Verbosity::quiet :
-                                             CommandLine::Verbosity::normal;
+    line.overrides = texts("set");
+    line.check     = has("check");
+    line.study     = has("study");
+    line.restart   = has("restart");
+    line.listing   = text("print-parameters");
+    line.verbosity = has("verbose") ? CommandLine::Verbosity::verbose :
+                     has("quiet")   ? CommandLine::Verbosity::quiet :
+                                      CommandLine::Verbosity::normal;
+    if (has("output"))
+      line.output_directory = texts("output").back();
     if (has("version"))
       line.answer =
         std::string("impm_dealii ") + version + ' ' + git_revision + '\n';

@@ -35,7 +35,8 @@ impm_dealii ..., to be stopped by SIGUSR1.
 
   namespace
   {
-    options::variables_map
+    /** The options in their order; words without one are called "file". */
+    std::vector<options::option>
     parse(const int argc, const char *const *argv)
     {
       options::options_description known;
@@ -48,10 +49,8 @@ impm_dealii ..., to be stopped by SIGUSR1.
                                "version",
                                "help,h"})
         add(flag, "");
-      for (const char *name : {"output,o", "print-parameters"})
+      for (const char *name : {"set", "output,o", "print-parameters", "file"})
         add(name, options::value<std::string>());
-      for (const char *name : {"set", "file"})
-        add(name, options::value<std::vector<std::string>>());
       options::positional_options_description files;
       files.add("file", -1);
       using options::command_line_style::style_t;
@@ -61,19 +60,15 @@ impm_dealii ..., to be stopped by SIGUSR1.
                    words.end(),
                    std::string("--print-parameters"),
                    std::string("--print-parameters=text"));
-      options::variables_map found;
-      options::store(options::command_line_parser(words)
-                       .options(known)
-                       .positional(files)
-                       .style(style_t::allow_long | style_t::allow_short |
-                              style_t::allow_dash_for_short |
-                              style_t::long_allow_next |
-                              style_t::long_allow_adjacent |
-                              style_t::short_allow_next |
-                              style_t::short_allow_adjacent)
-                       .run(),
-                     found);
-      return found;
+      return options::command_line_parser(words)
+        .options(known)
+        .positional(files)
+        .style(style_t::allow_long | style_t::allow_short |
+               style_t::allow_dash_for_short | style_t::long_allow_next |
+               style_t::long_allow_adjacent | style_t::short_allow_next |
+               style_t::short_allow_adjacent)
+        .run()
+        .options;
     }
   } // namespace
 
@@ -83,7 +78,7 @@ impm_dealii ..., to be stopped by SIGUSR1.
     const auto refuse = [](const std::string &what) {
       throw InputError("", what + "; see --help");
     };
-    options::variables_map found;
+    std::vector<options::option> found;
     try
       {
         found = parse(argc, argv);
@@ -92,56 +87,51 @@ impm_dealii ..., to be stopped by SIGUSR1.
       {
         refuse("unknown option '" + error.get_option_name() + "'");
       }
-    catch (const options::multiple_occurrences &error)
-      {
-        refuse("found '" + error.get_option_name() + "' twice");
-      }
-    catch (const options::error_with_option_name &error)
+    catch (const options::error &error)
       {
         refuse(error.what());
       }
-    const auto has = [&](const std::string &name) {
-      return found.count(name) > 0;
-    };
-    const auto text = [&](const std::string &name) {
-      return has(name) ? found[name].as<std::string>() : "";
-    };
-    const auto texts = [&](const std::string &name) {
-      return has(name) ? found[name].as<std::vector<std::string>>() :
-                         std::vector<std::string>();
-    };
 
     CommandLine line;
-    line.overrides        = texts("set");
-    line.output_directory = text("output");
-    line.check            = has("check");
-    line.study            = has("study");
-    line.restart          = has("restart");
-    line.listing          = text("print-parameters");
-    line.verbosity        = has("verbose") ? CommandLine::Verbosity::verbose :
-                            has("quiet")   ? CommandLine::Verbosity::quiet :
-                                             CommandLine::Verbosity::normal;
-    if (has("version"))
-      line.answer =
-        std::string("impm_dealii ") + version + ' ' + git_revision + '\n';
-    if (has("help"))
-      line.answer = help;
-    const auto files = texts("file");
-    if (files.size() > 1)
-      refuse("found a second parameter file '" + files[1] +
-             "', allowed is one");
-    if (!files.empty())
-      line.parameter_file = files[0];
+    for (const auto &option : found)
+      {
+        const auto &name  = option.string_key;
+        const auto  value = option.value.empty() ? "" : option.value[0];
+        if (name == "set")
+          line.overrides.push_back(value);
+        else if (name == "output" && value.empty())
+          refuse("found --output without a directory");
+        else if (name == "output")
+          line.output_directory = value;
+        else if (name == "restart")
+          line.restart = true;
+        else if (name == "check")
+          line.check = true;
+        else if (name == "study")
+          line.study = true;
+        else if (name == "print-parameters")
+          line.listing = value;
+        else if (name == "quiet")
+          line.verbosity = CommandLine::Verbosity::quiet;
+        else if (name == "verbose")
+          line.verbosity = CommandLine::Verbosity::verbose;
+        else if (name == "version")
+          line.answer =
+            std::string("impm_dealii ") + version + ' ' + git_revision + '\n';
+        else if (name == "help")
+          line.answer = help;
+        else if (line.parameter_file.empty())
+          line.parameter_file = value;
+        else
+          refuse("found a second parameter file '" + value +
+                 "', allowed is one");
+      }
     if (!line.listing.empty() && line.listing != "text" &&
         line.listing != "json" && line.listing != "markdown")
       refuse("found --print-parameters=" + line.listing +
              ", allowed are text, json, markdown");
     if (line.listing == "markdown" && line.output_directory.empty())
       refuse("--print-parameters=markdown wants a directory: --output DIR");
-    if (has("output") && line.output_directory.empty())
-      refuse("found --output without a directory");
-    if (has("quiet") && has("verbose"))
-      refuse("found --quiet and --verbose, allowed is one of both");
     if (line.answer.empty() && line.listing.empty() &&
         line.parameter_file.empty())
       refuse("no parameter file");

@@ -23,6 +23,9 @@ namespace impm
      * that includes another one twice, and so on, would wait for ever. */
     constexpr std::size_t largest_size = 100'000'000;
 
+    /** Of files and of sections inside each other. */
+    constexpr std::size_t largest_depth = 1000;
+
     [[noreturn]] void
     refuse(const std::string &place, const std::string &what)
     {
@@ -181,6 +184,10 @@ namespace impm
           return;
         if (begins_with(line, "subsection "))
           {
+            if (sections.size() == largest_depth)
+              refuse(at.place(),
+                     "found more than " + std::to_string(largest_depth) +
+                       " sections inside each other");
             sections.push_back(boost::trim_copy(line.substr(11)));
             at.path          = sections;
             at.is_subsection = true;
@@ -234,6 +241,9 @@ namespace impm
                 join(Path(names.begin() + (seen - above.begin()), names.end()),
                      " includes ") +
                 " includes " + name.string());
+        if (above.size() > largest_depth)
+          wrong("allowed are at most " + std::to_string(largest_depth) +
+                " files inside each other");
         read_file(name);
       }
 
@@ -301,6 +311,10 @@ namespace impm
       refuse(all, "found no '=', allowed is Section/Name=value");
     if (line.path.empty())
       refuse(all, "found no name, allowed is Section/Name=value");
+    if (line.path.size() > largest_depth)
+      refuse(all,
+             "found more than " + std::to_string(largest_depth) +
+               " sections inside each other");
     if (override.find('#') != std::string::npos ||
         boost::ends_with(line.value, "\\"))
       refuse(

@@ -326,9 +326,9 @@ namespace impm
                   density,
                   "(kg/m^3) from which its shape gives mass, centre and "
                   "inertia; empty: these are given.");
-      if (section.get("Density").empty())
+      if (section.get("Density").empty() || !section.is_read)
         add_inertia(section, body.inertia);
-      else if (section.is_read)
+      else
         {
           for (const std::string entry : {"Mass", "Centre", "Inertia"})
             if (!section.get(entry).empty())

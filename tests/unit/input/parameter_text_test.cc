@@ -125,6 +125,10 @@ TEST(ParameterText, WhatIsWrong)
   expect(std::string("\xFF\xFEs\0e\0t\0", 8), {"line 1", "UTF-16"});
   expect("set A = 1\rset B = 2\r", {"line 1", "carriage return"});
   expect("set A = 1e-320\n", {"line 1", "'1e-320'", "allowed"});
+  std::string deep;
+  for (unsigned int i = 0; i < 100000; ++i)
+    deep += "subsection A\n";
+  expect(deep, {"more than 1000 sections"});
   expect("include nowhere.prm\n", {"line 1", "'nowhere.prm'", "no such file"});
   expect("include .\n", {"line 1", "a directory"});
   expect("include /dev/zero\n", {"line 1", "no regular file"});
@@ -158,6 +162,11 @@ TEST(ParameterText, FilesThatIncludeEachOther)
                  "include " + std::to_string(i + 1) + ".prm\n");
   folder.write("1000.prm", "set A = 1\n");
   EXPECT_EQ(read_parameter_text(folder.name + "/0.prm").size(), 1u);
+  for (unsigned int i = 1000; i < 1005; ++i)
+    folder.write(std::to_string(i) + ".prm",
+                 "include " + std::to_string(i + 1) + ".prm\n");
+  expect_refusal(folder.name + "/0.prm",
+                 {"1000.prm, line 1", "at most 1000 files"});
   // Each of these twice the next one.
   for (unsigned int i = 0; i < 60; ++i)
     {

@@ -63,7 +63,7 @@ RUNS = {
         "wake.prm",
         1,
         ["Time/Largest number of steps=8"],
-        {"hanging", "rigid"},
+        {"hanging", "rigid", "merging"},
     ),
     "finite_elements": (
         "lagrangian_limit.prm",
@@ -83,6 +83,10 @@ RUNS = {
     "contact_3_ranks": ("contact/two_rods.prm", 3, [], {"same points", "layers"}),
     "free_body": ("contact/rolling_disc.prm", 1, ["Grid/Cells=48, 6"], {"free body"}),
     "units": ("cook.prm", 1, ["General/Units=mm, t, s"], set()),
+    "heat": ("materials/hot_billet.prm", 1, [f"Output/Point fields={ALL_FIELDS}"], set()),
+    "conduction": ("materials/conduction.prm", 1, [], set()),
+    "failure": ("materials/failure.prm", 1, [f"Output/Point fields={ALL_FIELDS}"], set()),
+    "loads": ("loads/tube.prm", 1, [], set()),
 }
 
 
@@ -243,6 +247,14 @@ def check(directory, tags, names):
         if row:
             assert int(row["points"]) == (points.points["id"] >= 0).sum()
         assert ("velocity_of_layer_1" in grid.points) == ("layers" in tags)
+    before, gone = set(), set()
+    for points in particles:
+        now = set(points.points["id"])
+        gone |= before - now
+        assert not now & gone, "an id comes back"
+        before = now
+    if "merging" in tags:
+        assert gone, "nothing merges"
     if "same points" in tags:
         check_displacements(particles[0], particles[-1])
     for meshes, section in (

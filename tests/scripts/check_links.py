@@ -80,6 +80,11 @@ def literals():
 
 
 @functools.cache
+def endings_of_names():
+    return tuple(literal for literal in literals() if re.match(r"_[a-z]{2}", literal))
+
+
+@functools.cache
 def text_of(file):
     return (ROOT / file).read_text()
 
@@ -207,9 +212,10 @@ def check_span(span):
                 if name != "*" and not any(n.startswith(name[:-1]) for n in names()):
                     yield f"no name '{span}'"
                 continue
-            # The code puts numbers behind some of them.
-            known = {name, re.sub(r"\d+$", "", name)} & (names() | literals())
-            if is_name and not known:
+            # The code makes some of them, with endings and numbers.
+            bare = re.sub(r"\d+$", "", name)
+            is_made = any(bare.endswith(ending) for ending in endings_of_names())
+            if is_name and not is_made and not {name, bare} & (names() | literals()):
                 yield f"no name '{name}'"
 
 

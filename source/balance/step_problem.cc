@@ -227,6 +227,12 @@ namespace impm
   void
   StepProblem<dim>::check_loads() const
   {
+    if (following_loads)
+      {
+        Vector at_rest;
+        discretization->initialize(at_rest);
+        following_loads->evaluate(at_rest, false); // so that flaws are seen
+      }
     if (const auto flaw = find_flaw(discretization->communicator))
       throw ComputationError(flaw->what(), flaw->entry);
   }

@@ -113,9 +113,6 @@ namespace impm
       add_bodies(top, scene.bodies, shapes, materials, scene.grid);
       add_adaptation(top, scene.adaptation, scene.grid, scene.bodies);
       scene.grid.finest_level = scene.adaptation.highest;
-      if (!scene.adaptation.criteria.empty() && scene.adaptation.highest == 0)
-        scene.warnings.push_back("the criteria of 'Grid/Adaptation' do nothing "
-                                 "where 'Highest level' is 0");
       add_boundary_conditions(top,
                               scene.faces,
                               scene.grips,

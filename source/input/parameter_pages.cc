@@ -225,7 +225,7 @@ namespace impm
              "--print-parameters=markdown`. Lists of names have one item each, "
              "which is called what it is: `Materials/material` stands for any "
              "material. What is for a third direction is there in 3D alone. "
-             "All numbers are in SI units.\n\n";
+             "Units are those of SI, or of `General/Units`.\n\n";
     for (const auto &section : sections_in("", entries))
       {
         std::ostringstream page;

@@ -1,24 +1,16 @@
 #include <gtest/gtest.h>
 
 #include "run_file.h"
+#include "scene_fixture.h"
 
 using namespace impm;
 
 // The billets of Guilkey & Weiss (2003), section 5.1, on coarse grids.
 namespace
 {
-  using Overrides = std::vector<std::string>;
-
   const Overrides coarse          = {"Grid/Cells=20, 11", "Time/Time step=0.1"};
   const Overrides finite_elements = {"Grid/Method=Lagrangian",
                                      "Bodies/billet/Points per cell=2"};
-
-  Overrides
-  operator+(Overrides first, const Overrides &second)
-  {
-    first.insert(first.end(), second.begin(), second.end());
-    return first;
-  }
 
   // Of finite elements with cells of 0.25 cm.
   constexpr double corner = 7.295, load = 3.621e8;

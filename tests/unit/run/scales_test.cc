@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "run_file.h"
+#include "scene_fixture.h"
 
 using namespace impm;
 
@@ -13,15 +14,6 @@ using namespace impm;
 // of a step may change.
 namespace
 {
-  using Overrides = std::vector<std::string>;
-
-  Overrides
-  operator+(Overrides first, const Overrides &second)
-  {
-    first.insert(first.end(), second.begin(), second.end());
-    return first;
-  }
-
   double
   sum(const std::vector<double> &values)
   {

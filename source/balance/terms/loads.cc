@@ -32,9 +32,10 @@ namespace impm
       const auto subtract =
         [&](auto &density, const bool is_initial, const auto &amount) {
           density.set_time(instant);
-          density.vector_value(Point<dim>(), value);
-          const bool   varies = !is_uniform(density);
-          unsigned int next   = 0;
+          const bool varies = !is_uniform(density);
+          if (!varies)
+            density.vector_value(Point<dim>(), value);
+          unsigned int next = 0;
           for (const auto &particle : points.sorted.particles)
             {
               const unsigned int p = next++;

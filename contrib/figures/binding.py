@@ -46,11 +46,13 @@ def curve(path):
 
 
 FUNCTIONS = {
-    # the printed figure is a bound; is round: its neighbours will do; is a time.
+    # the printed figure is a bound; is round: its neighbours will do; is a time; may be
+    # round-off, of which only the size below 1e-12 counts.
     "below": kind_of("below"),
     "above": kind_of("above"),
     "about": kind_of("about"),
     "seconds": kind_of("seconds"),
+    "roundoff": kind_of("roundoff"),
     # what a cell has beside results, such as another's figures
     "given": Kind(math.nan, "given"),
     "percent": lambda *values: [100 * value for value in flat(values)],
@@ -81,6 +83,8 @@ def compare(number, figure, factor):
     if kind == "seconds":
         off = value > factor * (printed + unit / 2) or value < max(printed - unit / 2, 0) / factor
         return "off" if off else "equal"
+    if kind == "roundoff" and max(abs(value), abs(printed)) < 1e-12:
+        return "equal"
     if kind == "below":
         return "equal" if value <= printed + half else "differs"
     if kind == "above":

@@ -1,6 +1,6 @@
 """What figures are recomputed from: studies, scenes and commands, run when asked for.
 
-Everything that a source leaves is in output/figures/<name>: `results`, `log.txt`, and
+Everything that a source leaves is in output/figures/<name>: `results`, what it printed, and
 `run.json` once it has gone to its end, so that it is not run again by the same program."""
 
 import hashlib
@@ -284,8 +284,9 @@ class Source:
             stamp.write_text(program_key())
             print(f"  runs {self.shown}", file=sys.stderr, flush=True)
             start = time.monotonic()
-            with open(self.directory / "log.txt", "w", encoding="utf-8") as log:
-                code = subprocess.run(self._words(), cwd=ROOT, stdout=log, stderr=log,
+            with open(self.directory / "log.txt", "w", encoding="utf-8") as log, \
+                 open(self.directory / "errors.txt", "w", encoding="utf-8") as errors:
+                code = subprocess.run(self._words(), cwd=ROOT, stdout=log, stderr=errors,
                                       stdin=subprocess.DEVNULL, check=False).returncode
             seconds = time.monotonic() - start
             if code < 0 or code >= 128:
@@ -295,9 +296,9 @@ class Source:
             print(f"    exit code {code}, {seconds:.1f} s", file=sys.stderr, flush=True)
         code = json.loads(done.read_text())["exit_code"]
         results = self.directory / "results"
-        log = (self.directory / "log.txt").read_text(encoding="utf-8", errors="replace")
         if code and (self.kind != "scene" or code != 2):
-            last = log.strip().splitlines()[-1:] or [f"exit code {code}"]
+            errors = (self.directory / "errors.txt").read_text(encoding="utf-8", errors="replace")
+            last = errors.strip().splitlines()[-1:] or [f"exit code {code}"]
             raise Failed(f"{self.shown}: {last[0]}")
         if self.kind == "study":
             return Study(results)

@@ -7,13 +7,10 @@
 Needs Debian's python3-vtk9 and python3-matplotlib.
 """
 
-import sys
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
-import matplotlib
-
-matplotlib.use("Agg")
+import results
 import matplotlib.pyplot as plt
 import numpy as np
 import vtk
@@ -67,7 +64,12 @@ def draw_grid(axes, cells, box_cells):
     axes.set_aspect("equal")
 
 
-def main(name, directory):
+def main():
+    parser = results.Parser(__doc__)
+    parser.add_argument("picture", type=results.picture_file, help="FILE.png, .svg or .pdf")
+    parser.add_argument("run", type=Path, help="output directory")
+    arguments = parser.parse_args()
+    directory = arguments.run
     start = picture(directory, "grid", 0)
     cells = list(cells_of(start))
     boxes = [box_of(corners) for corners in cells]
@@ -101,8 +103,8 @@ def main(name, directory):
     right.set(title="what the run finds", xlabel="radius (m)",
               ylabel="radial displacement (µm)")
     right.legend()
-    figure.savefig(name, dpi=110)
+    figure.savefig(arguments.picture, dpi=110)
 
 
 if __name__ == "__main__":
-    main(sys.argv[1], Path(sys.argv[2]))
+    main()

@@ -173,9 +173,16 @@ TEST(Hdf5Mpi, TheListGoesOnAfterARestart)
 
 #else
 
-TEST(Hdf5Mpi, IsMissing)
+#  include "expect_blame.h"
+
+using namespace impm;
+
+TEST(Hdf5Mpi, IsRefusedWhereItIsMissing)
 {
-  GTEST_SKIP() << "deal.II was built without HDF5";
+  expect_blame(block_scene("plane strain"),
+               {"Output/Format=hdf5"},
+               "Output/Format",
+               {"allowed is vtu"});
 }
 
 #endif

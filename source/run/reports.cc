@@ -30,6 +30,37 @@ namespace impm
           area += surfaces.initial_area(s);
       return Utilities::MPI::sum(area, surfaces.communicator);
     }
+
+    /** Faces that hold nothing across and have loaded surface beyond them: what
+     * of a body is out there has no grid. Collective. */
+    template <int dim>
+    std::vector<int>
+    passed_by_loads(const Scene<dim>          &scene,
+                    const BackgroundGrid<dim> &grid,
+                    const SurfacePoints<dim>  &surfaces)
+    {
+      // Round-off and what a solver leaves is no way out.
+      const double most = 1e-3 * grid.discretization()->smallest_cell_extent;
+      std::vector<int> passed(2 * dim);
+      unsigned int     s = 0;
+      for (const auto &particle : surfaces.sorted.particles)
+        {
+          const auto   place     = surfaces.place(particle);
+          bool         is_loaded = false;
+          const size_t n_loads   = scene.loads.on_surfaces.size();
+          for (unsigned int l = 0; l < n_loads; ++l)
+            is_loaded = is_loaded || surfaces.carries(s, l);
+          ++s;
+          for (unsigned int f = 0; is_loaded && f < 2 * dim; ++f)
+            if (!scene.faces[f].constrained[f / 2] &&
+                (f % 2 == 0 ? -1 : 1) *
+                    (place[f / 2] - grid.face_of_vertices(f)) >
+                  most)
+              passed[f] = 1;
+        }
+      Utilities::MPI::max(passed, surfaces.communicator, passed);
+      return passed;
+    }
   } // namespace
 
   template <int dim>
@@ -344,6 +375,17 @@ namespace impm
   Simulation<dim>::write_row()
   {
     history.write(since_row);
+    if (!scene.loads.on_surfaces.empty())
+      {
+        const auto passed = passed_by_loads(scene, grid, *surfaces);
+        for (unsigned int f = 0; f < 2 * dim; ++f)
+          if (passed[f] != 0)
+            warn("loads beyond face " + scene.faces[f].name,
+                 "a surface with a load is beyond face '" +
+                   scene.faces[f].name +
+                   "' of the domain, where there is no grid: the body is "
+                   "loaded and deforms too little; leave it room there");
+      }
     if (history.last_density().smallest < 1)
       {
         std::ostringstream text;

@@ -107,7 +107,8 @@ namespace impm
                   time,
                   dt,
                   norm ? norm->unit_strain_forces : gathered.mass,
-                  TouchedNodes<dim>(scene.faces, grid, *discretization, points))
+                  TouchedNodes<dim>(
+                    scene.faces, grid, *discretization, points, footprints))
     , response(points,
                dt,
                time + dt,

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <utility>
 
 namespace impm
 {
@@ -156,7 +158,8 @@ namespace impm
   TouchedNodes<dim>::TouchedNodes(const Faces<dim>          &faces,
                                   const BackgroundGrid<dim> &grid,
                                   const Discretization<dim> &discretization,
-                                  const MaterialPoints<dim> &points)
+                                  const MaterialPoints<dim> &points,
+                                  const Footprints<dim>     &footprints)
     : all(points.offset_touched == 0)
   {
     if (all)
@@ -166,39 +169,56 @@ namespace impm
                              grid.face_of_vertices(2 * d + 1) -
                                grid.face_of_vertices(2 * d));
     discretization.initialize(closeness);
+
+    // On a grid that has moved points are elsewhere than their boxes.
+    std::map<std::pair<unsigned int, unsigned int>, double> gaps; // of landings
+    if (!grid.is_moved())
+      for_points_at_faces(
+        faces,
+        points,
+        [&](const unsigned int p,
+            const Point<dim>  &x,
+            const auto & /*cell*/,
+            const unsigned int f) {
+          if ((bits_of(points, p) & lands<dim>(f)) != 0)
+            gaps[{p, f}] =
+              std::max(0.,
+                       gap_to_face(points, p, f, x, grid.face_of_vertices(f)));
+        });
+    const auto gap_of = [&](const unsigned int p, const unsigned int f) {
+      const auto landing = gaps.find({p, f});
+      return landing == gaps.end() ? 0. : landing->second;
+    };
     const auto &hanging = discretization.numbering->hanging_nodes;
-    for_points_at_faces(
-      faces,
-      points,
-      [&](const unsigned int p,
-          const Point<dim>  &x,
-          const auto        &surrounding,
-          const unsigned int f) {
-        const unsigned int bits = bits_of(points, p);
-        if ((bits & touches(f)) == 0)
-          return;
-        // On a grid that has moved points are elsewhere than their boxes.
-        const double close =
-          largest_gap -
-          ((bits & lands<dim>(f)) != 0 && !grid.is_moved() ?
-             std::max(0.,
-                      gap_to_face(points, p, f, x, grid.face_of_vertices(f))) :
-             0.);
-        const auto set = [&](const types::global_dof_index dof) {
-          closeness(dof) = std::max(closeness(dof), close);
-        };
-        const auto cell = discretization.with_dofs(surrounding);
-        for (const unsigned int v : cell->face(f)->vertex_indices())
-          {
-            const auto dof =
-              cell->face(f)->vertex_dof_index(v, dim * points.layer(p) + f / 2);
-            set(dof);
-            // A hanging node is held by holding its masters.
-            if (hanging.is_constrained(dof))
-              for (const auto &entry : *hanging.get_constraint_entries(dof))
-                set(entry.first);
-          }
-      });
+    const auto  touch   = [&](const types::global_dof_index dof,
+                           const double                  close) {
+      const auto set = [&](const types::global_dof_index of) {
+        closeness(of) = std::max(closeness(of), close);
+      };
+      set(dof);
+      // A hanging node is held by holding its masters.
+      if (hanging.is_constrained(dof))
+        for (const auto &entry : *hanging.get_constraint_entries(dof))
+          set(entry.first);
+    };
+    // All nodes of a face are held that what touches it feels: a box reaches
+    // more cells than the one in which its middle lies.
+    for (const auto &entries : footprints.cells)
+      {
+        const auto cell = discretization.with_dofs(entries.cell);
+        if (!cell->at_boundary())
+          continue;
+        for (const unsigned int f : cell->face_indices())
+          if (cell->face(f)->at_boundary() && faces[f].holds_by_touch)
+            for (unsigned int e = entries.begin; e < entries.end; ++e)
+              if (const unsigned int p = footprints.point[e];
+                  (bits_of(points, p) & touches(f)) != 0)
+                for (const unsigned int v : cell->face(f)->vertex_indices())
+                  touch(cell->face(f)->vertex_dof_index(v,
+                                                        dim * points.layer(p) +
+                                                          f / 2),
+                        largest_gap - gap_of(p, f));
+      }
     closeness.compress(VectorOperation::max);
     closeness.update_ghost_values();
   }

@@ -1,6 +1,7 @@
 #ifndef impm_grid_touching_h
 #define impm_grid_touching_h
 
+#include <impm/footprints/footprints.h>
 #include <impm/grid/background_grid.h>
 #include <impm/input/sections/boundary_conditions.h>
 #include <impm/points/material_points.h>
@@ -57,7 +58,8 @@ namespace impm
     TouchedNodes(const Faces<dim>          &faces,
                  const BackgroundGrid<dim> &grid,
                  const Discretization<dim> &discretization,
-                 const MaterialPoints<dim> &points);
+                 const MaterialPoints<dim> &points,
+                 const Footprints<dim>     &footprints);
 
     /** Whether faces hold all their nodes. */
     bool

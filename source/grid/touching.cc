@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
-#include <utility>
 
 namespace impm
 {
@@ -168,58 +166,70 @@ namespace impm
       largest_gap = std::max(largest_gap,
                              grid.face_of_vertices(2 * d + 1) -
                                grid.face_of_vertices(2 * d));
-    discretization.initialize(closeness);
+    Vector waiting, reached;
+    for (Vector *nodes : {&closeness, &waiting, &reached})
+      discretization.initialize(*nodes);
 
-    // On a grid that has moved points are elsewhere than their boxes.
-    std::map<std::pair<unsigned int, unsigned int>, double> gaps; // of landings
-    if (!grid.is_moved())
-      for_points_at_faces(
-        faces,
-        points,
-        [&](const unsigned int p,
-            const Point<dim>  &x,
-            const auto & /*cell*/,
-            const unsigned int f) {
-          if ((bits_of(points, p) & lands<dim>(f)) != 0)
-            gaps[{p, f}] =
-              std::max(0.,
-                       gap_to_face(points, p, f, x, grid.face_of_vertices(f)));
-        });
-    const auto gap_of = [&](const unsigned int p, const unsigned int f) {
-      const auto landing = gaps.find({p, f});
-      return landing == gaps.end() ? 0. : landing->second;
-    };
     const auto &hanging = discretization.numbering->hanging_nodes;
-    const auto  touch   = [&](const types::global_dof_index dof,
-                           const double                  close) {
-      const auto set = [&](const types::global_dof_index of) {
-        closeness(of) = std::max(closeness(of), close);
+    const auto  set_at  = [&](Vector            &nodes,
+                            const auto        &place,
+                            const unsigned int f,
+                            const unsigned int p,
+                            const double       value) {
+      const auto cell = discretization.with_dofs(place);
+      const auto set  = [&](const types::global_dof_index dof) {
+        nodes(dof) = std::max(nodes(dof), value);
       };
-      set(dof);
-      // A hanging node is held by holding its masters.
-      if (hanging.is_constrained(dof))
-        for (const auto &entry : *hanging.get_constraint_entries(dof))
-          set(entry.first);
+      for (const unsigned int v : cell->face(f)->vertex_indices())
+        {
+          const auto dof =
+            cell->face(f)->vertex_dof_index(v, dim * points.layer(p) + f / 2);
+          set(dof);
+          // A hanging node is held by holding its masters.
+          if (hanging.is_constrained(dof))
+            for (const auto &entry : *hanging.get_constraint_entries(dof))
+              set(entry.first);
+        }
     };
-    // All nodes of a face are held that what touches it feels: a box reaches
-    // more cells than the one in which its middle lies.
+
+    for_points_at_faces(
+      faces,
+      points,
+      [&](const unsigned int p,
+          const Point<dim>  &x,
+          const auto        &cell,
+          const unsigned int f) {
+        const unsigned int bits = bits_of(points, p);
+        if ((bits & touches(f)) == 0)
+          return set_at(waiting, cell, f, p, 1);
+        // On a grid that has moved points are elsewhere than their boxes.
+        const double gap =
+          (bits & lands<dim>(f)) != 0 && !grid.is_moved() ?
+            std::max(0.,
+                     gap_to_face(points, p, f, x, grid.face_of_vertices(f))) :
+            0.;
+        set_at(closeness, cell, f, p, largest_gap - gap);
+      });
+
+    // Nodes that only edges of boxes reach: those of what touches hold, too, if
+    // no other material lies there. Were they free, what spreads into the next
+    // column would part from the face.
     for (const auto &entries : footprints.cells)
-      {
-        const auto cell = discretization.with_dofs(entries.cell);
-        if (!cell->at_boundary())
-          continue;
-        for (const unsigned int f : cell->face_indices())
-          if (cell->face(f)->at_boundary() && faces[f].holds_by_touch)
+      if (entries.cell->at_boundary())
+        for (const unsigned int f : entries.cell->face_indices())
+          if (entries.cell->face(f)->at_boundary() && faces[f].holds_by_touch)
             for (unsigned int e = entries.begin; e < entries.end; ++e)
-              if (const unsigned int p = footprints.point[e];
-                  (bits_of(points, p) & touches(f)) != 0)
-                for (const unsigned int v : cell->face(f)->vertex_indices())
-                  touch(cell->face(f)->vertex_dof_index(v,
-                                                        dim * points.layer(p) +
-                                                          f / 2),
-                        largest_gap - gap_of(p, f));
-      }
-    closeness.compress(VectorOperation::max);
+              {
+                const unsigned int p    = footprints.point[e],
+                                   bits = bits_of(points, p);
+                if ((bits & touches(f)) != 0 && (bits & lands<dim>(f)) == 0)
+                  set_at(reached, entries.cell, f, p, largest_gap);
+              }
+    for (Vector *nodes : {&closeness, &waiting, &reached})
+      nodes->compress(VectorOperation::max);
+    for (unsigned int i = 0; i < closeness.locally_owned_size(); ++i)
+      if (closeness.local_element(i) == 0 && waiting.local_element(i) == 0)
+        closeness.local_element(i) = reached.local_element(i);
     closeness.update_ghost_values();
   }
 

@@ -104,7 +104,7 @@ namespace impm
     std::array<unsigned int, 1u << dim>
     nodes_of(const CellIterator &cell, const unsigned int layer) const
     {
-      std::array<unsigned int, 1u << dim> nodes;
+      std::array<unsigned int, 1u << dim> nodes{};
       for (const unsigned int v : cell->vertex_indices())
         nodes[v] = numbering->partitioner->global_to_local(
                      cell->vertex_dof_index(v, dim * layer)) /

@@ -385,7 +385,9 @@ TEST(PointFile, VtuOfDealIIUncompressed)
 
 TEST(PointFile, VtuOfDealIIWithoutPoints)
 {
-  expect_error<2>(write_with_deal_ii<2>({}, {}, VtkFlags()), ".vtu", {"no points"});
+  expect_error<2>(write_with_deal_ii<2>({}, {}, VtkFlags()),
+                  ".vtu",
+                  {"no points"});
 }
 
 TEST(PointFile, VtuErrorsOfStructure)

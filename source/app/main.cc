@@ -169,12 +169,12 @@ namespace
 int
 main(int argc, char **argv)
 {
-  std::optional<dealii::Utilities::MPI::MPI_InitFinalize> mpi;
-  dealii::ConditionalOStream                              errors(std::cerr);
-  const bool is_alone = !is_started_by_mpi();
+  std::optional<MpiSession>  mpi;
+  dealii::ConditionalOStream errors(std::cerr);
+  const bool                 is_alone = !is_started_by_mpi();
   if (!is_alone)
     {
-      mpi.emplace(argc, argv, 1);
+      mpi.emplace(argv[0]);
       errors.set_condition(
         dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0);
     }
@@ -194,7 +194,7 @@ main(int argc, char **argv)
       if (is_alone && computes && !line.study)
         {
           prepare_mpi_for_one_process();
-          mpi.emplace(argc, argv, 1);
+          mpi.emplace(argv[0]);
         }
       if (computes)
         compute(line);

@@ -6,6 +6,11 @@
 
 namespace impm
 {
+  MpiSession::MpiSession(char *program)
+    : word(program)
+    , session(n_words, words, 1)
+  {}
+
   bool
   is_started_by_mpi()
   {

@@ -528,13 +528,13 @@ namespace impm
     names.insert(names.end(), dim, "beyond_face");
     if (!scene.contact.pairs.empty())
       {
-        names.push_back("pair");
+        names.emplace_back("pair");
         names.insert(names.end(), dim, "slip");
         names.insert(names.end(), {"contact_pressure", "gap"});
       }
     if (!scene.loads.on_surfaces.empty())
       {
-        names.push_back("loads");
+        names.emplace_back("loads");
         add_edges("initial_edge_");
         names.insert(names.end(), dim, "initial_position");
       }

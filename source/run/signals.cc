@@ -1,6 +1,7 @@
 #include <impm/run/signals.h>
 
 #include <csignal>
+#include <initializer_list>
 
 namespace impm
 {

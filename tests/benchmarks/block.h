@@ -48,7 +48,7 @@ namespace impm
   {
     if (!is_started_by_mpi())
       prepare_mpi_for_one_process();
-    const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+    const MpiSession mpi(argv[0]);
     try
       {
         run([&](const int i, const std::string &otherwise) {

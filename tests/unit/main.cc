@@ -1,6 +1,8 @@
 #include <deal.II/base/exceptions.h>
 #include <deal.II/base/mpi.h>
 
+#include <impm/app/mpi_start.h>
+
 #include <gtest/gtest.h>
 
 #include <iostream>
@@ -30,7 +32,7 @@ namespace
 int
 main(int argc, char **argv)
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  const impm::MpiSession mpi(argv[0]);
   testing::InitGoogleTest(&argc, argv);
 
   // An assertion in deal.II shall fail its test, and let the others run.

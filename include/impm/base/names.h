@@ -27,6 +27,7 @@ namespace impm
   names_of(const std::vector<Entry> &entries)
   {
     std::vector<std::string> names;
+    names.reserve(entries.size());
     for (const auto &entry : entries)
       names.push_back(entry.name);
     return names;

@@ -85,6 +85,7 @@ namespace impm
   {
     const auto       &loads = scene.loads.on_surfaces;
     std::vector<bool> vary;
+    vary.reserve(loads.size());
     for (const auto &load : loads)
       vary.push_back(!is_uniform(*load.value));
     unsigned int s = 0;

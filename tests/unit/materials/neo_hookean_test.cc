@@ -67,8 +67,9 @@ TYPED_TEST(NeoHookeanLaws, TangentOfRandomDeformations)
           for (unsigned int a = 0; a < 6; ++a)
             for (unsigned int b = 0; b < 6; ++b)
               {
-                const auto ij = c.unrolled_to_component_indices(a);
-                const auto kl = c.unrolled_to_component_indices(b);
+                using Stress  = SymmetricTensor<2, 3>;
+                const auto ij = Stress::unrolled_to_component_indices(a);
+                const auto kl = Stress::unrolled_to_component_indices(b);
                 asymmetry     = std::max(asymmetry,
                                      std::abs(c[ij[0]][ij[1]][kl[0]][kl[1]] -
                                               c[kl[0]][kl[1]][ij[0]][ij[1]]));

@@ -7,7 +7,7 @@
 namespace impm
 {
   MpiSession::MpiSession(char *program)
-    : word(program)
+    : ended_words{program, nullptr}
     , session(n_words, words, 1)
   {}
 

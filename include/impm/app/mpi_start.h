@@ -17,8 +17,8 @@ namespace impm
     explicit MpiSession(char *program);
 
   private:
-    char                                    *word;
-    char                                   **words   = &word;
+    char                                    *ended_words[2];
+    char                                   **words   = ended_words;
     int                                      n_words = 1;
     dealii::Utilities::MPI::MPI_InitFinalize session;
   };

@@ -10,7 +10,7 @@ from functools import cache
 
 import numpy
 
-from figures.page import HOLE, Page, numbers_in
+from figures.page import HOLE, Page, numbers_in, without_names
 from figures.sources import Failed, NotRun, Source
 from results import ROOT, read_numbers, read_rows
 
@@ -166,12 +166,15 @@ class Binding:
 
     def _bind_table(self, entry):
         unknown = set(entry) - {"under", "place", "rows", "columns", "cell", "output", "nth",
-                                "seconds", "without"}
+                                "seconds", "without", "each"}
         if unknown:
             raise ValueError(f"unknown: {', '.join(unknown)}")
         table = self.page.table(entry["under"], entry.get("place", 1))
         if "output" in entry:
             self._bind_output(table, entry)
+            return
+        if "each" in entry:
+            self._bind_each(table, entry["each"])
             return
         rows = self._chosen(entry.get("rows"), [row[0][2] for row in table.rows], True)
         heads = [cell[2] for cell in table.head]
@@ -244,6 +247,23 @@ class Binding:
                 if head in entry.get("seconds", []):
                     what = f"seconds({what})"
                 self._add(numbers, what)
+
+    def _bind_each(self, table, command):
+        """Every row is what a command prints for the name in it, but for round-off; the last
+        column has the time that this takes."""
+        for row in table.rows:
+            label = re.search(r"`([^`]*)`", self.page.text[row[0][0]:row[-1][1]])[1]
+            source = "row_" + re.sub(r"\W", "_", label)
+            time = re.fullmatch(r"([\d.]+) (s|min)", row[-1][2])
+            cost = float(time[1]) * (60 if time[2] == "min" else 1) if time else None
+            words = {"command": command.replace("{label}", label), "seconds": cost}
+            self.sources[source] = Source(source, words, self.sources)
+            for j, (start, end, _) in enumerate(row):
+                numbers = self.page.numbers_within(start, end)
+                if numbers:
+                    kind = "seconds" if j == len(row) - 1 else "roundoff"
+                    head = table.head[j][2]
+                    self._add(numbers, f"{kind}(printed_cell({source}, 1, 0, {j}, {head!r}))")
 
     # Evaluation
 
@@ -344,7 +364,7 @@ def printed_cell(output, nth, row, column, head):
     names = table[0]
     place = names.index(head) if names.count(head) == 1 else column
     text = table[2 + row][place]
-    return [number.value for number in numbers_in(text)]
+    return [number.value for number in numbers_in(without_names(text))]
 
 
 @cache

@@ -48,6 +48,13 @@ class Number:
         return 10.0 ** (int(exponent or 0) - len(mantissa.partition(".")[2]))
 
 
+def without_names(text):
+    """Blanks where there are no figures."""
+    for pattern in NO_FIGURES:
+        text = pattern.sub(lambda m: re.sub(r"\S", " ", m[0]), text)
+    return text
+
+
 def numbers_in(text):
     return [Number(m.start(), m.end(), m[0]) for m in NUMBER.finditer(text)]
 
@@ -65,9 +72,7 @@ class Page:
     def __init__(self, path):
         self.text = path.read_text(encoding="utf-8")
         self.lines = [m.start() for m in re.finditer("^", self.text, re.M)]
-        blanked = self.text
-        for pattern in NO_FIGURES:
-            blanked = pattern.sub(lambda m: re.sub(r"\S", " ", m[0]), blanked)
+        blanked = without_names(self.text)
         self.tables = list(self._read_tables())
         tables = [(table.start, table.rows[-1][-1][1] if table.rows else table.start)
                   for table in self.tables]

@@ -20,7 +20,7 @@ NO_FIGURES = (
     re.compile(r"!\[[^\]]*\]"),
     re.compile(r"\]\([^)]*\)"),
     re.compile(r"\b\d+(?:, no\. \d+)? \((?:18|19|20)\d\d\)(?:,? \d+(?:-\d+)?)?"),
-    re.compile(r"\b(?:18|19|20)\d\d\b(?!\.\d| ?%)"),
+    re.compile(r"(?<![\w.])(?:1[89]\d\d|20[0-4]\d)\b(?!\.\d| ?%)"),
     re.compile(r"\b(?:[Ss]ections?|sec\.|eqs?\.|[Ff]igures?|[Tt]ables?|chapter|rows?) \d+(?:\.\d+)*"
                r"(?:(?:,| and| to) \d+(?:\.\d+)*)*[a-d]?\b"),
 )

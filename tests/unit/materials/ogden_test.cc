@@ -194,7 +194,7 @@ TEST(Ogden, TangentsOfLargeStretches)
                               diagonal(10., 10., 10.),
                               diagonal(0.1, 0.1, 0.1)})
     for (const auto &q : {in_plane, in_space})
-      EXPECT_LT(derivative_error({treloar, 2.}, q * stretch * some_other, 1e-3),
+      EXPECT_LT(derivative_error({treloar, 2.}, q * stretch * some_other, 3e-3),
                 1e-10)
         << stretch;
 }

@@ -50,11 +50,15 @@ namespace impm
   void
   end_landing(bool was_made, MaterialPoints<dim> &points);
 
-  /** What touches the nodes of faces. */
+  /**
+   * What touches the nodes of faces: those of the cells at a face in which
+   * what touches it lies, and those that only edges of its boxes reach, unless
+   * something lies there that does not touch the face yet.
+   */
   template <int dim>
   struct TouchedNodes
   {
-    /** Collective. */
+    /** Of the boxes of `footprints`. Collective. */
     TouchedNodes(const Faces<dim>          &faces,
                  const BackgroundGrid<dim> &grid,
                  const Discretization<dim> &discretization,

@@ -82,8 +82,9 @@ class Field:
 
     def at(self, places):
         """Linear between the points, of the nearest one beyond them."""
-        # triangulations do not like numbers as small as millimetres in metres
-        net = Triangulation(*(self.place.T / CELL))
+        # Triangulations do not like numbers as small as millimetres in metres, and get lost
+        # where rows of points are straight but for the digits of pictures.
+        net = Triangulation(*(self.place.T / CELL).round(3))
         values = LinearTriInterpolator(net, self.value)(*(places.T / CELL))
         values = numpy.ma.filled(values, numpy.nan)
         for i in numpy.flatnonzero(~numpy.isfinite(values)):

@@ -2,6 +2,7 @@
 #include <impm/app/version.h>
 #include <impm/base/exceptions.h>
 
+#include <boost/algorithm/string/trim.hpp>
 #include <boost/program_options.hpp>
 
 #include <algorithm>
@@ -117,7 +118,9 @@ impm_dealii ..., to be stopped by SIGUSR1.
           line.verbosity = CommandLine::Verbosity::verbose;
         else if (name == "version")
           line.answer =
-            std::string("impm_dealii ") + version + ' ' + git_revision + '\n';
+            boost::trim_right_copy(std::string("impm_dealii ") + version + ' ' +
+                                   git_revision) + // none outside of git
+            '\n';
         else if (name == "help")
           line.answer = help;
         else if (line.parameter_file.empty())

@@ -103,7 +103,7 @@ class Run:
     def at(self, column, where, along="time"):
         """A column of the history, linear in another."""
         x, y = self.history[along], self.history[column]
-        if not x[0] <= where * (1 + 1e-5) or where * (1 - 1e-5) > x[-1]:
+        if not x[0] <= where * (1 + 1e-9) or where * (1 - 1e-9) > x[-1]:
             raise Failed(f"{self.directory.name} has no {along} of {where}")
         return numpy.interp(where, x, y)
 

@@ -93,11 +93,9 @@ namespace impm
        "between surfaces over the layer in which they feel each other"},
       {"*_normal_force",
        a_force,
-       "of a pair of the section Contact, at the end of the step; where bodies "
-       "meet or part in it, it acts for a part of the step only"},
-      {"*_friction_force",
-       a_force,
-       "of a pair, by what of the normal force acts in the step"},
+       "of a pair of the section Contact, at the end of the step; in one in "
+       "which bodies meet, what of it acts"},
+      {"*_friction_force", a_force, "of a pair, along the surface; likewise"},
       {"*_area", an_area, "in contact"},
       {"*_largest_pressure", a_stress, "likewise"},
       {"work_of_heat", an_energy, "by thermal expansion, so far"},

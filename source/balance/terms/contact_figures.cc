@@ -65,7 +65,9 @@ namespace impm
           const double p = states[l].pressure;
           if (!link.is_bond && p == 0)
             continue;
-          sums[0] += link.area * p;
+          // In a long step the layer of what has met is pressed further at its
+          // end than by the force that stopped it.
+          sums[0] += link.area * (link.is_bond ? p : states[l].given);
           sums[1] += link.area * states[l].friction;
           sums[2] += link.area;
           largest = std::max(largest, p);

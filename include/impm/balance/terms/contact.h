@@ -8,8 +8,8 @@
 namespace impm
 {
   /** What a pair of bodies does where their surfaces touch, or are bonded: sums
-   * of pressure and of friction, each without regard to its direction (N), the
-   * area (m^2), and the largest pressure (Pa). */
+   * of pressure, as far as it acts, and of friction, each without regard to its
+   * direction (N), the area (m^2), and the largest pressure (Pa). */
   struct ContactFigures
   {
     double normal_force = 0, friction_force = 0, area = 0, largest_pressure = 0;

@@ -96,15 +96,16 @@ namespace impm
       Kind kind;
       section.add("Kind",
                   kind,
-                  {{"glue", {}},
+                  {{"frictionless", {false, ContactKind::frictionless}},
+                   {"Coulomb", {false, ContactKind::coulomb}},
                    {"bonded", {false, ContactKind::bonded}},
-                   {"frictionless", {false, ContactKind::frictionless}},
-                   {"Coulomb", {false, ContactKind::coulomb}}},
-                  "Glue: both move the same nodes, and so meet as soon as they "
-                  "come to one cell, and never part again. Bonded: each moves "
-                  "its own, and surfaces that touch at the start stay "
-                  "together. Frictionless, Coulomb: surfaces that meet press "
-                  "on each other, slide and part.");
+                   {"glue", {}}},
+                  "Frictionless, Coulomb: surfaces that meet press on each "
+                  "other, slide and part. Bonded: each body moves nodes of its "
+                  "own, and surfaces that touch at the start stay together. "
+                  "Glue: both move the same nodes, as bodies do that no pair "
+                  "names, and so meet as soon as they come to one cell, and "
+                  "never part again.");
       is_glued  = kind.is_glued;
       pair.kind = kind.kind;
       if (pair.partner_kind != PartnerKind::deformable &&
@@ -289,8 +290,8 @@ namespace impm
     const auto section = top.subsection("Contact");
     const auto names   = section.names(
       "Pairs",
-      "Names of pairs of bodies that are not glued to each other, each with a "
-        "subsection.");
+      "Names of pairs of bodies, each with a subsection; those that none names "
+        "are glued to each other.");
     if (names.empty() &&
         std::none_of(bodies.begin(), bodies.end(), [](const auto &body) {
           return body.meets_surfaces;

@@ -231,7 +231,7 @@ QUANTITIES = {  # powers of length, mass and time
     "specific energy": (2, 0, -2),
 }
 OF_FIELDS = {
-    "length": ("position", "displacement", "opening"),
+    "length": ("position", "displacement"),
     "velocity": ("velocity",),
     "volume": ("volume",),
     "specific energy": ("internal_energy",),

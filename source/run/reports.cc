@@ -415,10 +415,12 @@ namespace impm
         TimerOutput::Scope scope(timer, "references");
         reference.follow_step(time);
       }
-    console.step(since_row,
-                 scene.time.end,
-                 points.sorted.n_global(),
-                 history.last_figures());
+    // A narrow terminal has room for the first ones: forces before probes.
+    auto figures = history.last_figures();
+    std::rotate(figures.begin(),
+                figures.end() - scene.output.reactions.size(),
+                figures.end());
+    console.step(since_row, scene.time.end, points.sorted.n_global(), figures);
     since_row = StepReport();
   }
 

@@ -27,11 +27,13 @@ namespace impm
     may_change(const std::string &path)
     {
       static const std::set<std::string> entries = {
+        "General/Title",
         "Output/Directory",
         "Output/Format",
         "Output/Pictures",
         "Output/Time between pictures",
         "Output/Steps between pictures",
+        "Output/Steps between rows",
         "Output/Point fields",
         "Time/End time",
         "Time/Largest number of steps",

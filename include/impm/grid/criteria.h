@@ -22,8 +22,8 @@ namespace impm
   /**
    * Raises the levels that a criterion wants its cells to have, by active cell
    * index, of cells that this rank owns. Throws InputError for a field that the
-   * points of the scene do not have or an expression that is not a number at
-   * the start, ComputationError for one that is so later. Collective.
+   * points of the scene do not have. Where an expression is not a number,
+   * levels stay: the run checks expressions itself. Collective.
    */
   template <int dim>
   void

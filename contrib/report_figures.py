@@ -147,7 +147,8 @@ def points(runs, field, only_last=False):
     shown = []
     for run in runs:
         records = results.pictures(run.directory)
-        grids = dict(results.pictures(run.directory, "grid")) if run.has("grid.pvd") else {}
+        has_grid = results.list_of_pictures(run.directory, "grid").exists()
+        grids = dict(results.pictures(run.directory, "grid")) if has_grid else {}
         for time, path in records[-1:] if only_last else choose(records):
             shown.append((run, time, results.Data(path), grids.get(time)))
     values = [plot_points.values_of(data, field) if field else numpy.zeros(len(data.places))

@@ -28,6 +28,7 @@ PACKAGES = {
     "sympy": "python3-sympy",
     "vtk": "python3-vtk9",
     "vtkmodules": "python3-vtk9",
+    "vtkmodules.vtkIOXdmf2": "python3-paraview",
 }
 
 
@@ -40,7 +41,8 @@ def one_line(error):
     if isinstance(error, Refusal):
         return str(error)
     if isinstance(error, ModuleNotFoundError):
-        package = PACKAGES.get((error.name or "").split(".")[0])
+        name = error.name or ""
+        package = PACKAGES.get(name) or PACKAGES.get(name.split(".")[0])
         return package and (
             f"{sys.executable} has no module '{error.name}': install Debian's {package}"
             " (contrib/install_packages does) and run /usr/bin/python3"
@@ -148,6 +150,33 @@ def parameters(directory):
     return entries
 
 
+def read_vtu(path):
+    from vtkmodules.vtkIOXML import vtkXMLPUnstructuredGridReader, vtkXMLUnstructuredGridReader
+
+    parallel = path.suffix == ".pvtu"
+    reader = (vtkXMLPUnstructuredGridReader if parallel else vtkXMLUnstructuredGridReader)()
+    if not reader.CanReadFile(str(path)):
+        raise Refusal(f"'{path}' is no picture of a run")
+    reader.SetFileName(str(path))
+    reader.Update()
+    return reader.GetOutput()
+
+
+def read_hdf5(path):
+    """By the XDMF file of its series, which says what is where."""
+    from vtkmodules.vtkIOXdmf2 import vtkXdmfReader
+
+    series = path.stem.rpartition("_")[0]
+    times = [time for time, file in pictures(path.parent, series) if file == path]
+    if not times:
+        raise Refusal(f"'{path}' is no picture of '{path.with_name(series)}.xdmf'")
+    reader = vtkXdmfReader()
+    reader.SetFileName(str(path.with_name(f"{series}.xdmf")))
+    reader.UpdateInformation()
+    reader.UpdateTimeStep(times[0])
+    return reader.GetOutputDataObject(0)
+
+
 class Data:
     """The points of a picture, or the nodes of its grid: `places` (n x 3), and fields by
     name, (n), (n x 3) or (n x 3 x 3)."""
@@ -155,20 +184,13 @@ class Data:
     def __init__(self, path):
         from vtkmodules.util.numpy_support import vtk_to_numpy
         from vtkmodules.vtkCommonCore import vtkObject
-        from vtkmodules.vtkIOXML import (
-            vtkXMLPUnstructuredGridReader,
-            vtkXMLUnstructuredGridReader,
-        )
 
         vtkObject.GlobalWarningDisplayOff()
-        parallel = Path(path).suffix == ".pvtu"
-        reader = (vtkXMLPUnstructuredGridReader if parallel else vtkXMLUnstructuredGridReader)()
-        if not Path(path).is_file() or not reader.CanReadFile(str(path)):
+        path = Path(path)
+        if not path.is_file():
             raise Refusal(f"'{path}' is no picture of a run")
-        reader.SetFileName(str(path))
-        reader.Update()
         self.path = path
-        self.output = reader.GetOutput()
+        self.output = (read_hdf5 if path.suffix == ".h5" else read_vtu)(path)
         if self.output.GetPoints() is None:
             raise Refusal(f"'{path}' has no points")
         self.to_numpy = vtk_to_numpy
@@ -197,16 +219,29 @@ class Data:
         return self.places[corners.reshape(self.output.GetNumberOfCells(), -1)]
 
 
+def list_of_pictures(directory, series="particles"):
+    """The file that names them; of a run without pictures the one of VTU files, which is
+    not there."""
+    path = Path(directory) / f"{series}.pvd"
+    xdmf = path.with_suffix(".xdmf")
+    return xdmf if xdmf.exists() and not path.exists() else path
+
+
 def pictures(directory, series="particles"):
     """Times and paths of the pictures, in their order."""
-    path = Path(directory) / f"{series}.pvd"
+    path = list_of_pictures(directory, series)
     try:
-        records = ElementTree.parse(path).findall(".//DataSet")
+        tree = ElementTree.parse(path)
     except ElementTree.ParseError:
-        raise Refusal(f"'{path}' is no PVD file") from None
+        raise Refusal(f"'{path}' is no list of pictures") from None
+    if path.suffix == ".xdmf":
+        records = [(grid.find("Time").get("Value"), grid.find(".//DataItem").text.partition(":")[0])
+                   for grid in tree.findall(".//Grid/Grid")]
+    else:
+        records = [(r.get("timestep"), r.get("file")) for r in tree.findall(".//DataSet")]
     if not records:
         raise Refusal(f"'{path}' names no picture")
-    return [(float(r.get("timestep")), path.parent / r.get("file")) for r in records]
+    return [(float(time), path.parent / file.strip()) for time, file in records]
 
 
 def last_picture(directory, series="particles"):

@@ -138,7 +138,7 @@ def diagram(about, lines, error, title=None):
             size_points += data
             over_size.plot(*zip(*data) if data else ([], []), **style)
     over_time.set_xlabel("run time (s)")
-    over_time.set_ylabel(f"relative error of {error}")
+    over_time.set_ylabel(f"error of {error}")
     panels = [over_time]
     if has_sizes:
         draw_slopes(over_size, size_points)

@@ -129,7 +129,7 @@ def errors_over_time(records):
             seconds, error, "osD^vP*X"[j % 8], color=colour(i, len(runs)), markersize=7,
             label=f"{name}: {reference}",
         )
-    axis.set(xscale="log", yscale="log", xlabel="run time (s)", ylabel="relative error")
+    axis.set(xscale="log", yscale="log", xlabel="run time (s)", ylabel="error")
     plot_study.tidy(axis)
     axis.legend(loc="center left", bbox_to_anchor=(1, 0.5))
     return data_uri(figure)

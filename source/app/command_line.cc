@@ -18,6 +18,7 @@ namespace impm
                       else output/<name of the prm>)
   --restart           go on from the last checkpoint in the directory of
                       results, with the same scene
+  --continue          the same where there is one, else begin
   --check             parse, validate, print the scene, its point fields
                       and bytes per point; run nothing
   --study             run the file's Study section; with --check, list its runs
@@ -43,6 +44,7 @@ impm_dealii ..., to be stopped by SIGUSR1.
       options::options_description known;
       auto                         add = known.add_options();
       for (const char *flag : {"restart",
+                               "continue",
                                "check",
                                "study",
                                "quiet,q",
@@ -106,6 +108,8 @@ impm_dealii ..., to be stopped by SIGUSR1.
           line.output_directory = value;
         else if (name == "restart")
           line.restart = true;
+        else if (name == "continue")
+          line.goes_on = true;
         else if (name == "check")
           line.check = true;
         else if (name == "study")
@@ -138,10 +142,10 @@ impm_dealii ..., to be stopped by SIGUSR1.
     if (line.answer.empty() && line.listing.empty() &&
         line.parameter_file.empty())
       refuse("no parameter file");
-    if (line.restart && line.study)
+    if ((line.restart || line.goes_on) && line.study)
       throw InputError("",
-                       "--restart of a --study: it keeps the runs that are "
-                       "done anyway");
+                       "--restart or --continue of a --study: it keeps the "
+                       "runs that are done anyway");
     return line;
   }
 } // namespace impm

@@ -6,6 +6,7 @@
 #include <impm/app/version.h>
 #include <impm/base/exceptions.h>
 #include <impm/input/parameter_pages.h>
+#include <impm/run/checkpoint_files.h>
 #include <impm/run/signals.h>
 #include <impm/run/simulation.h>
 #include <impm/study/finer_run.h>
@@ -53,7 +54,8 @@ namespace
   {
     std::vector<std::string> words(argv, argv + argc);
     if (from_checkpoint &&
-        std::count(words.begin(), words.end(), "--restart") == 0)
+        std::count(words.begin(), words.end(), "--restart") == 0 &&
+        std::count(words.begin(), words.end(), "--continue") == 0)
       words.push_back("--restart");
     if (const auto n = dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD);
         n > 1)
@@ -84,9 +86,15 @@ namespace
     Simulation<dim> simulation(scene, line.verbosity, MPI_COMM_WORLD);
     simulation.describe();
     const auto finer_runs = make_finer_runs(scene.references, line, directory);
-    if (!line.check)
-      simulation.run(
-        directory, name, file.resolved({"Study"}), finer_runs, line.restart);
+    if (line.check)
+      return;
+    const bool restarts =
+      line.restart ||
+      (line.goes_on &&
+       dealii::Utilities::MPI::broadcast(MPI_COMM_WORLD,
+                                         has_checkpoint(directory)));
+    simulation.run(
+      directory, name, file.resolved({"Study"}), finer_runs, restarts);
   }
 
   /** Before what may take long. */

@@ -84,6 +84,12 @@ namespace impm
     }
   } // namespace
 
+  bool
+  has_checkpoint(const std::string &run_directory)
+  {
+    return fs::exists(run_directory + "/checkpoint/last_good");
+  }
+
   CheckpointFiles::CheckpointFiles(const std::string &run_directory)
     : folder(run_directory + "/checkpoint")
   {}

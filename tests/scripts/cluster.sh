@@ -18,7 +18,7 @@ printf '#!/bin/bash\necho "$@" >> "%s/asked"\n' "$output" > "$output/bin/scontro
 chmod +x "$output/bin/scontrol"
 export PATH=$output/bin:$PATH SLURM_JOB_ID=7 SLURM_NTASKS=2 IMPM_DEALII=$program
 job=(bash "$root/contrib/cluster/upsetting.sbatch" "$root/prm/upsetting.prm"
-  --output "$output/run" --set "Grid/Adaptation/Highest level=0"
+  -o "$output/run" --set "Grid/Adaptation/Highest level=0"
   --set "Time/Time step=1e-4" --set Output/Pictures=false)
 
 bash -n "$root/contrib/cluster/upsetting.sbatch" || exit 1

@@ -20,6 +20,7 @@ namespace impm
     bool                     check   = false; ///< but do not run
     bool                     study   = false; ///< of the Study section
     bool                     restart = false; ///< from the last checkpoint
+    bool                     goes_on = false; ///< likewise, if there is one
     std::string              listing; ///< of parameters: its form, or empty
     Verbosity                verbosity = Verbosity::normal;
     std::string              parameter_file;

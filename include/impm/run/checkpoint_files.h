@@ -7,6 +7,10 @@
 
 namespace impm
 {
+  /** Whether a run has left one in its directory. */
+  bool
+  has_checkpoint(const std::string &run_directory);
+
   /**
    * The folder `checkpoint` of a run's directory, as the first rank sees it.
    * Two checkpoints, a and b, are written in turn. Each is some files whose

@@ -47,6 +47,17 @@ class Number:
         mantissa, _, exponent = self.text.lower().partition("e")
         return 10.0 ** (int(exponent or 0) - len(mantissa.partition(".")[2]))
 
+    def printed_like_it(self, value):
+        """Another value, to as many decimals."""
+        mantissa, power, _ = self.text.lower().partition("e")
+        decimals = len(mantissa.partition(".")[2])
+        if power:
+            digits, _, exponent = f"{value:.{decimals}e}".partition("e")
+            return f"{digits}e{int(exponent)}"
+        plus = "+" if self.text.startswith("+") else ""
+        text = f"{value:{plus}{',' if ',' in self.text else ''}.{decimals}f}"
+        return text if float(text.replace(",", "")) else text.lstrip("+-")
+
 
 def without_names(text):
     """Blanks where there are no figures."""

@@ -1,6 +1,8 @@
 #include <impm/base/exceptions.h>
 #include <impm/solve/difference_quotient.h>
 
+#include <algorithm>
+
 namespace impm
 {
   double
@@ -30,10 +32,12 @@ namespace impm
         dst = 0;
         return;
       }
+    // By no more than that part of a cell: nodes with next to no mass may go
+    // far and count for little in the norm.
+    const double most =
+      system.length_scale() * length / direction.linfty_norm();
     const double size    = norm(u);
-    const double epsilon = step * (size > 0 ? size :
-                                              system.length_scale() * length /
-                                                direction.linfty_norm());
+    const double epsilon = step * (size > 0 ? std::min(size, most) : most);
     direction.sadd(epsilon / length, 1., u);
     if (!system.evaluate(direction, false).admissible)
       throw LinearizationError(

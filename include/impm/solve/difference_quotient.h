@@ -8,8 +8,8 @@ namespace impm
   /**
    * The tangent's action by a difference of residuals (Sulsky & Kaul 2004, eq.
    * 2.4.18): J(u) s = |s| (r(u + e s / |s|) - r(u)) / e with e = h |u|, but so
-   * that no node moves by more than h cells; by h cells where u = 0. In the momentum formulation the
-   * unknown is that of the nodes.
+   * that no node moves by more than h cells; by h cells where u = 0. In the
+   * momentum formulation the unknown is that of the nodes.
    */
   class DifferenceQuotient
   {

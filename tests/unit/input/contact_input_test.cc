@@ -98,6 +98,16 @@ TEST(ContactInput, ABodyFromAFile)
 }
 
 
+TEST(ContactInput, WithoutKindBodiesMeet)
+{
+  const auto pairs =
+    scene_of({"Contact/Pairs=p", "Contact/p/Bodies=block, second"})
+      .contact.pairs;
+  ASSERT_EQ(pairs.size(), 1u);
+  EXPECT_EQ(pairs[0].kind, ContactKind::frictionless);
+}
+
+
 TEST(ContactInput, KindsThatDoNotFit)
 {
   for (const std::string kind : {"bonded", "glue"})

@@ -87,7 +87,10 @@ namespace impm
   bool
   has_checkpoint(const std::string &run_directory)
   {
-    return fs::exists(run_directory + "/checkpoint/last_good");
+    // A crash may have come between the first one and the file that names it.
+    const std::string folder = run_directory + "/checkpoint/";
+    return fs::exists(folder + "last_good") || fs::exists(folder + "a.json") ||
+           fs::exists(folder + "b.json");
   }
 
   CheckpointFiles::CheckpointFiles(const std::string &run_directory)

@@ -33,6 +33,8 @@ code=$?
 [ $code = 138 ] || fail "exit code $code, expected 138"
 [ "$(cat "$output/asked")" = "requeue 7" ] || fail "it has not asked for the queue"
 
+# As a crash leaves it that comes right after the first checkpoint.
+rm "$output/run/checkpoint/last_good"
 "${job[@]}" --set "Time/End time=0.002" > "$output/said" 2>&1 || fail "exit code $?"
 grep -q "restart from" "$output/said" || fail "it has not gone on"
 [ "$(wc -l < "$output/asked")" = 1 ] || fail "a run that is done wants the queue"

@@ -7,7 +7,8 @@
 
 namespace impm
 {
-  /** Whether a run has left one in its directory. */
+  /** Whether a run has left one in its directory, be it damaged: what is to go
+   * on should say so rather than begin anew. */
   bool
   has_checkpoint(const std::string &run_directory);
 

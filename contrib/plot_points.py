@@ -4,8 +4,9 @@ tensors it is the size.
 
     contrib/plot_points.py output/upsetting equivalent_plastic_strain strain.png
 
-With the fields initial_domain and deformation_gradient in the pictures they are drawn as
-their boxes, carried along by the deformation, else as discs of their size.
+With the field deformation_gradient in the pictures they are drawn as boxes that it
+carries along: those of initial_domain or, without that field, squares and cubes of their
+volume at the start; else as discs of their size.
 """
 
 import itertools
@@ -38,13 +39,27 @@ def values_of(points, field):
     return numpy.where(is_rigid(points), numpy.nan, points.size_of(field))
 
 
-def boxes(points, dim):
+def initial_edges(points, F, dim, is_axisymmetric):
+    """Of the boxes (points x 3), nothing if they are not known."""
+    if "initial_domain" in points:
+        return points["initial_domain"]
+    if "volume" not in points:
+        return None
+    size = points["volume"] / numpy.linalg.det(F)
+    if is_axisymmetric:  # of a ring, whose length was 2 pi times its radius
+        size = size * F[:, 2, 2] / (2 * numpy.pi * points.places[:, 0])
+    return numpy.repeat(numpy.abs(size)[:, None] ** (1 / dim), 3, axis=1)
+
+
+def boxes(points, dim, is_axisymmetric):
     """Corners (points x 2^dim x dim) of the boxes, nothing if they are not known."""
-    if "initial_domain" not in points or "deformation_gradient" not in points:
+    if "deformation_gradient" not in points:
         return None
     rigid = is_rigid(points)
     F = numpy.where(rigid[:, None, None], numpy.eye(3), points["deformation_gradient"])
-    edges = points["initial_domain"]
+    edges = initial_edges(points, F, dim, is_axisymmetric)
+    if edges is None:
+        return None
     if not rigid.all():
         edges = numpy.where(rigid[:, None], numpy.median(edges[~rigid], axis=0), edges)
     shapes = (CORNERS[dim] * edges[:, None, :dim]) @ F[:, :dim, :dim].transpose(0, 2, 1)
@@ -92,7 +107,7 @@ def draw(axes, points, values, norm, dim=2, is_axisymmetric=False, grid=None):
     """Of points as results.Data; behind them the cells of a grid in the plane."""
     colours = plt.get_cmap(MAP)(norm(values))
     colours[is_rigid(points)] = (0.5, 0.5, 0.5, 1)
-    corners = boxes(points, dim) if len(values) <= MOST_BOXES else None
+    corners = boxes(points, dim, is_axisymmetric) if len(values) <= MOST_BOXES else None
     if grid is not None and dim == 2:
         cells = PolyCollection(
             grid.cells()[:, :, :2], facecolor="none", edgecolor="gray", linewidth=0.3,

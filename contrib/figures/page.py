@@ -1,6 +1,7 @@
 """A page of Markdown: its numbers, its tables, and where an excerpt stands in it."""
 
 import bisect
+import math
 import re
 from dataclasses import dataclass, field
 
@@ -47,13 +48,15 @@ class Number:
         mantissa, _, exponent = self.text.lower().partition("e")
         return 10.0 ** (int(exponent or 0) - len(mantissa.partition(".")[2]))
 
-    def printed_like_it(self, value):
-        """Another value, to as many decimals."""
+    def printed_like_it(self, value, digits=0):
+        """Another value, to as many decimals, or more if it has fewer digits than that."""
         mantissa, power, _ = self.text.lower().partition("e")
         decimals = len(mantissa.partition(".")[2])
         if power:
-            digits, _, exponent = f"{value:.{decimals}e}".partition("e")
-            return f"{digits}e{int(exponent)}"
+            mantissa, _, exponent = f"{value:.{decimals}e}".partition("e")
+            return f"{mantissa}e{int(exponent)}"
+        if digits and value:
+            decimals = max(decimals, digits - 1 - math.floor(math.log10(abs(value))))
         plus = "+" if self.text.startswith("+") else ""
         text = f"{value:{plus}{',' if ',' in self.text else ''}.{decimals}f}"
         return text if float(text.replace(",", "")) else text.lstrip("+-")

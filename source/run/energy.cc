@@ -1,5 +1,6 @@
 #include <impm/balance/terms/contact.h>
 #include <impm/base/exceptions.h>
+#include <impm/base/units.h>
 #include <impm/run/simulation.h>
 
 #include <algorithm>
@@ -89,10 +90,24 @@ namespace impm
         warn("energy gain", text.str());
         return;
       }
+    // What runs away is fastest where it does so.
+    double       fastest = -1;
+    Point<dim>   place;
+    unsigned int p = 0;
+    for (const auto &particle : points.sorted.particles)
+      if (const double v = points.velocity(p++).norm(); v > fastest)
+        {
+          fastest = v;
+          place   = particle.get_location();
+        }
+    const auto speed = Utilities::MPI::min_max_avg(fastest, communicator);
+    place = Utilities::MPI::broadcast(communicator, place, speed.max_index);
     std::ostringstream where;
     where
       << "at t = " << time << ' ' << scene.general.units.time << ", step "
-      << total.step << ": " << text.str() << ": "
+      << total.step << ": " << text.str() << ", the fastest point has "
+      << speed.max << ' ' << scene.general.units.of(a_velocity) << " at "
+      << place << ' ' << scene.general.units.length << ": "
       << (integrator->is_explicit() ?
             "explicit steps are too long, perhaps for nodes of little mass (which "
             "Formulation = momentum or Grid/Method = GIMP spares)" :

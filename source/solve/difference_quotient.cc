@@ -1,8 +1,6 @@
 #include <impm/base/exceptions.h>
 #include <impm/solve/difference_quotient.h>
 
-#include <algorithm>
-
 namespace impm
 {
   double
@@ -32,16 +30,24 @@ namespace impm
         dst = 0;
         return;
       }
-    // By no more than that part of a cell: nodes with next to no mass may go
-    // far and count for little in the norm.
-    const double most =
-      system.length_scale() * length / direction.linfty_norm();
     const double size    = norm(u);
-    const double epsilon = step * (size > 0 ? std::min(size, most) : most);
-    direction.sadd(epsilon / length, 1., u);
-    if (!system.evaluate(direction, false).admissible)
-      throw LinearizationError(
-        "the difference quotient turns a point inside out");
+    double       epsilon = step * (size > 0 ? size :
+                                              system.length_scale() * length /
+                                          direction.linfty_norm());
+    // Nodes with next to no mass count for little in the norm and may go far.
+    // Not by fewer cells from the start: where they matter as little for the
+    // points, the difference would be one of round-off.
+    constexpr unsigned int attempts = 8;
+    for (unsigned int k = 1;; ++k, epsilon /= 10)
+      {
+        moved = u;
+        moved.add(epsilon / length, direction);
+        if (system.evaluate(moved, false).admissible)
+          break;
+        if (k == attempts)
+          throw LinearizationError(
+            "the difference quotient turns a point inside out");
+      }
     dst = system.residual();
     dst -= residual;
     dst *= length / epsilon;

@@ -143,8 +143,8 @@ namespace impm
                         solver.difference_step,
                         {"1e-5", 1e-12, 0.1},
                         "h of the difference quotient, relative to the norm "
-                        "of the increment; no node moves by more than h "
-                        "cells.");
+                        "of the increment; less where that turns a point "
+                        "inside out.");
         }
       if (section.chooses(linear_solvers, LinearSolverKind::automatic) ||
           section.chooses(linear_solvers, LinearSolverKind::gmres))

@@ -628,6 +628,41 @@ TEST(MomentumBalanceMpi, DifferenceQuotient)
 }
 
 
+// Nodes with next to no mass count for little in the norm of a momentum, so
+// that a direction in which they move goes far; but as little for the points,
+// so that a step short enough for them would leave the others no digits.
+TEST(MomentumBalanceMpi, DifferenceQuotientKeepsDigits)
+{
+  const double h = 1e-4;
+  Model<2>     model(block_scene("plane strain"),
+                 trapezoidal + Overrides{"Time/Formulation=momentum",
+                                         "Geometry/box/Upper corner=0.5, 1",
+                                         "Solver/Linear solver=GMRES"});
+  // Next to the left nodes of their cells.
+  model.place_points([](const unsigned int, const auto &particle) {
+    auto x = particle.get_location();
+    x[0]   = std::floor(x[0] / 0.25) * 0.25 + 1e-12;
+    return x;
+  });
+  model.begin_step();
+  auto              &balance = model.balance();
+  const impm::Vector u       = model.random_increment(1, 0.01);
+  impm::Vector       s       = model.random_direction(2);
+  for (unsigned int i = 0; i < s.locally_owned_size(); ++i)
+    if (!balance.is_constrained(i))
+      s.local_element(i) /= balance.weight_of_unknowns()->local_element(i);
+  impm::Vector exact = model.vector(), approximate = model.vector();
+  ASSERT_TRUE(balance.evaluate(u, true).admissible);
+  balance.vmult(exact, s);
+  DifferenceQuotient quotient(balance, h);
+  balance.evaluate(u, false);
+  quotient.linearize_at(u);
+  quotient.vmult(approximate, s);
+  approximate -= exact;
+  EXPECT_LT(approximate.l2_norm() / exact.l2_norm(), 1e-3);
+}
+
+
 // The ghost penalty counts on a face as often as it should: for a field with a
 // kink over one face its energy is known.
 TEST(MomentumBalanceMpi, GhostPenaltyOfAKink)

@@ -116,6 +116,11 @@ namespace impm
         else if (!line->is_subsection)
           set(*line, patterns[path]);
       }
+    for (const auto &entry : entries)
+      if (boost::ends_with(entry.documentation, to_be_given) &&
+          values.count(entry.path) == 0 && !is_switched_off(entry.path, values))
+        warnings.push_back("entry '" + entry.path + "' is not given: " +
+                           entry.default_value + " is taken");
     if (!idle.empty())
       judge(idle, values, entries, declare);
   }

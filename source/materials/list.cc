@@ -25,7 +25,8 @@ namespace impm
       prm.declare_entry("Density",
                         "1000",
                         dealii::Patterns::Double(1e-300),
-                        "Density before any deformation (kg/m^3), positive.");
+                        "Density before any deformation (kg/m^3), positive; "
+                        "to be given.");
     }
 
     /**

@@ -1,6 +1,7 @@
 #include <impm/footprints/approach.h>
 #include <impm/footprints/pieces.h>
 #include <impm/points/deformation_drift.h>
+#include <impm/run/failed_points.h>
 #include <impm/run/likely_causes.h>
 #include <impm/run/simulation.h>
 
@@ -29,6 +30,8 @@ namespace impm
       }
     step.smallest_J = Utilities::MPI::min(step.smallest_J, communicator);
     step.largest_J  = Utilities::MPI::max(step.largest_J, communicator);
+    for (const auto &of_body : failed_points(points))
+      step.failed += of_body.n;
     if (!grid.is_lagrangian)
       {
         const auto now = count_pieces(points,

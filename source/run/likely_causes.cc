@@ -39,12 +39,24 @@ namespace impm
     if (step.is_unstable)
       add("a limit point: the run has met equilibria that are not stable, and "
           "may be beyond the load that can be borne");
+    if (step.failed > 0)
+      add(
+        "failed points: ",
+        step.failed,
+        " of them bear next to nothing and go anywhere, as far as ",
+        step.largest_J,
+        " times their volume, in a step without inertia ('Remaining stress' = "
+        "1e-3 to 1e-2 holds them)");
     if (step.pieces > step.pieces_before || step.points_per_cell < 0.5)
       add("a tear: material has parted, ",
           step.pieces,
           " pieces hang together and a cell has ",
           step.points_per_cell,
           " points (let points split, or begin with more)");
+    if (failed_by("leave the domain"))
+      add(
+        "a face that holds nothing there (section 'Boundary conditions'), or a "
+        "grid that is too small for where the body goes");
     if (failed_by("whole cell") || (step.are_plain && step.drift > 0.1))
       add("crossing: points go far through the grid, and their deformation has "
           "drifted from how they lie by ",

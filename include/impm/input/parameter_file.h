@@ -75,6 +75,10 @@ namespace impm
     std::unique_ptr<dealii::ParameterHandler> prm;
   };
 
+  /** How the documentation of an entry ends whose default is but a number, such
+   * as a constant of a material: a file that lacks it is warned of. */
+  constexpr char to_be_given[] = "to be given.";
+
   /** What the entries of a handler, which stands at the top, say. */
   Chosen
   chosen_in(dealii::ParameterHandler &prm);

@@ -37,13 +37,14 @@ namespace impm
       prm.declare_entry("Young's modulus",
                         "1e9",
                         dealii::Patterns::Double(1e-300),
-                        "Young's modulus of small strains (Pa), positive.");
+                        "Young's modulus of small strains (Pa), positive; to "
+                        "be given.");
       // The ends are excluded by a margin that error messages can show.
       prm.declare_entry("Poisson's ratio",
                         "0.3",
                         dealii::Patterns::Double(-0.9999, 0.499999),
                         "Poisson's ratio of small strains, between -1 and 0.5, "
-                        "both excluded.");
+                        "both excluded; to be given.");
     }
 
     static ElasticConstants
@@ -111,7 +112,7 @@ namespace impm
           prm.declare_entry(name,
                             value,
                             dealii::Patterns::Double(1e-300),
-                            "Of small strains (Pa), positive.");
+                            "Of small strains (Pa), positive; to be given.");
     }
 
     static ElasticConstants

@@ -37,7 +37,7 @@ namespace impm
                           "2e9",
                           dealii::Patterns::Double(1e-300),
                           "Pressure over relative change of density (Pa), "
-                          "positive.");
+                          "positive; to be given.");
         prm.declare_entry("Viscosity",
                           "0",
                           dealii::Patterns::Double(0.),

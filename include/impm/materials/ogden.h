@@ -85,7 +85,7 @@ namespace impm
                           "1e9",
                           dealii::Patterns::Double(1e-300),
                           "Pressure over logarithmic change of volume (Pa), "
-                          "positive.");
+                          "positive; to be given.");
       }
 
       /** Of small strains. */
@@ -214,12 +214,12 @@ namespace impm
                         dealii::Patterns::Double(0.),
                         "Energy per squared stretch (Pa), not negative. Twice "
                         "the sum with C01 is the shear modulus of small "
-                        "strains.");
+                        "strains; to be given.");
       prm.declare_entry("C01",
                         "5e4",
                         dealii::Patterns::Double(0.),
                         "Energy per inverse squared stretch (Pa), not "
-                        "negative.");
+                        "negative; to be given.");
       Ogden::Parameters::declare_bulk_modulus(prm);
     }
 

@@ -20,6 +20,7 @@ namespace impm
     double       fullest         = 1;           ///< see PointsPerCell
     double       smallest_J = 1, largest_J = 1; ///< of a point
     bool         bodies_touch = false;          ///< share a node, or nearly do
+    unsigned int failed       = 0;              ///< points, see FailingLaw
   };
 
   /** What it may have failed for, for people: the likely ones, in their order,

@@ -81,7 +81,8 @@ namespace impm
     void
     check_place(const Section       &section,
                 const Shape<dim>    &shape,
-                const GridSpec<dim> &grid)
+                const GridSpec<dim> &grid,
+                const bool           is_rigid)
     {
       const auto box = shape.bounding_box;
       if (!box || grid.is_lagrangian())
@@ -98,7 +99,10 @@ namespace impm
                            std::to_string(upper) + " m in direction " +
                            "xyz"[d] + ", allowed is the grid's " +
                            std::to_string(grid.lower_corner[d]) + " to " +
-                           std::to_string(grid.upper_corner[d]) + " m");
+                           std::to_string(grid.upper_corner[d]) + " m" +
+                           (is_rigid ?
+                              ", or 'Contact = surface', which needs no nodes" :
+                              ""));
         }
     }
 
@@ -136,7 +140,7 @@ namespace impm
           if (!lagrangian && !body.rigid)
             add_surface(section, body);
           if (body.shape)
-            check_place(section, *body.shape, grid);
+            check_place(section, *body.shape, grid, body.rigid);
         }
       if (section.chooses(from_file, true))
         section.add("File",

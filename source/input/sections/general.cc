@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <set>
 
 namespace impm
 {
@@ -33,6 +34,13 @@ namespace impm
           "Units",
           "allowed are three names, of units of length, mass and time, "
           "made of letters, as in 'cm, g, s'");
+      if (names.size() == 3 &&
+          std::set<std::string>{
+            "N", "kN", "MN", "Pa", "kPa", "MPa", "GPa", "lbf"}
+              .count(names[1]) > 0)
+        section.refuse("Units",
+                       "allowed in the middle is a unit of mass, as in 'mm, t, "
+                       "s', with forces in N and stresses in MPa");
       if (section.is_read)
         units = {names[0], names[1], names[2]};
     }

@@ -1,4 +1,5 @@
 #include <impm/base/exceptions.h>
+#include <impm/base/names.h>
 #include <impm/study/study.h>
 
 #include <gtest/gtest.h>
@@ -99,6 +100,25 @@ TEST(ParameterFile, WarnsOfWhatDoesNothing)
     }
   EXPECT_TRUE(has(warnings_of({"Time/Integrator=explicit"}),
                   "subsection 'Solver' does nothing"));
+}
+
+
+// A constant of a material that nobody has given is told.
+TEST(ParameterFile, WarnsOfWhatIsMissing)
+{
+  std::string       text    = plane;
+  const std::string density = "set Density";
+  const auto        begin   = text.find(density);
+  ASSERT_NE(begin, std::string::npos);
+  text.erase(begin, text.find('\n', begin) - begin);
+  const TemporaryFile file(text, ".prm");
+  const auto          warnings_with = [&](const Overrides &overrides) {
+    return join(ParameterFile(file.name, overrides, declare_file).warnings,
+                "\n");
+  };
+  EXPECT_EQ(warnings_with({}),
+            "entry 'Materials/rubber/Density' is not given: 1000 is taken");
+  EXPECT_EQ(warnings_with({"Materials/rubber/Density=1000"}), "");
 }
 
 

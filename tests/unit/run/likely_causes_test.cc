@@ -113,6 +113,26 @@ TEST(LikelyCauses, AnOverfullCell)
 }
 
 
+TEST(LikelyCauses, FailedPoints)
+{
+  FailedStep step;
+  step.failure = "a point turns inside out";
+  step.failed  = 12;
+  EXPECT_NE(likely_causes(step).find("failed points: 12 of them"),
+            std::string::npos);
+}
+
+
+// A body flies out, since no face holds it.
+TEST(LikelyCauses, AFaceThatHoldsNothing)
+{
+  FailedStep step;
+  step.failure =
+    "point 0 at 1 0 would leave the domain through its bottom face";
+  EXPECT_NE(likely_causes(step).find("Boundary conditions"), std::string::npos);
+}
+
+
 // Newton's method stops where round-off keeps the residual up: such a tolerance
 // ends no run.
 TEST(LikelyCauses, ToleranceBelowRoundOff)

@@ -23,7 +23,7 @@ namespace impm
                       dealii::Patterns::Double(1e-300),
                       "Uniaxial stress (Pa; Kirchhoff's in laws of "
                       "logarithmic strains) at which the material starts to "
-                      "yield, positive.");
+                      "yield, positive; to be given.");
   }
 
   inline void

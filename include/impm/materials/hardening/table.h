@@ -33,7 +33,7 @@ namespace impm
                         "logarithmic strains) between semicolons: 'strain "
                         "stress; strain stress'. The first stress is positive, "
                         "none is negative, and none falls by three shear "
-                        "moduli. Behind the last it stays.");
+                        "moduli. Behind the last it stays; to be given.");
     }
 
     /** Beside the parameters of ElasticConstants. */

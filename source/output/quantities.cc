@@ -146,7 +146,9 @@ namespace impm
        a_force,
        "of a pair, forces along the surface, without regard to their "
        "direction"},
-      {"*_area", an_area, "of a pair, that is in contact"},
+      {"*_area",
+       an_area,
+       "of a pair: of the points of its surface that bear something"},
       {"*_largest_pressure", a_stress, "of a pair"},
       {"work_of_heat", an_energy, "by thermal expansion, so far"},
       {"heat",

@@ -1,6 +1,8 @@
 #include <impm/base/exceptions.h>
 #include <impm/solve/difference_quotient.h>
 
+#include <algorithm>
+
 namespace impm
 {
   double
@@ -30,21 +32,21 @@ namespace impm
         dst = 0;
         return;
       }
-    const double size    = norm(u);
-    double       epsilon = step * (size > 0 ? size :
-                                              system.length_scale() * length /
-                                          direction.linfty_norm());
+    // Moves the node that goes farthest by h cells.
+    const double size = norm(u);
+    const double least =
+      system.length_scale() * length / direction.linfty_norm();
+    double epsilon = step * (size > 0 ? size : least);
     // Nodes with next to no mass count for little in the norm and may go far.
-    // Not by fewer cells from the start: where they matter as little for the
+    // Not by h cells from the start: where they matter as little for the
     // points, the difference would be one of round-off.
-    constexpr unsigned int attempts = 8;
-    for (unsigned int k = 1;; ++k, epsilon /= 10)
+    for (;; epsilon = std::max(epsilon / 10, step * least))
       {
         moved = u;
         moved.add(epsilon / length, direction);
         if (system.evaluate(moved, false).admissible)
           break;
-        if (k == attempts)
+        if (epsilon <= step * least)
           throw LinearizationError(
             "the difference quotient turns a point inside out");
       }

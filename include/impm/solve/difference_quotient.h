@@ -8,8 +8,9 @@ namespace impm
   /**
    * The tangent's action by a difference of residuals (Sulsky & Kaul 2004, eq.
    * 2.4.18): J(u) s = |s| (r(u + e s / |s|) - r(u)) / e with e = h |u|, a tenth
-   * of it and so on where that turns a point inside out; h cells where u = 0.
-   * In the momentum formulation the unknown is that of the nodes.
+   * of it and so on where that turns a point inside out, until no node moves by
+   * more than h cells; by h cells where u = 0. In the momentum formulation the
+   * unknown is that of the nodes.
    */
   class DifferenceQuotient
   {

@@ -46,7 +46,7 @@ namespace impm
         moved.add(epsilon / length, direction);
         if (system.evaluate(moved, false).admissible)
           break;
-        if (epsilon <= step * least)
+        if (!(epsilon > step * least))
           throw LinearizationError(
             "the difference quotient turns a point inside out");
       }

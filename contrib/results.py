@@ -335,6 +335,10 @@ class Run:
     def is_done(self):
         return self.summary.get("status") == "done"
 
+    def has_failed(self):
+        """Neither done nor to be gone on with."""
+        return bool(self.summary) and self.summary.get("status") not in ("done", "stopped by a signal")
+
 
 def as_file_name(label):
     """What a study makes of a label in the names of its directories."""
@@ -356,6 +360,7 @@ class Study:
         self.about = read_json(self.directory / "study.json")
         self.title = self.about["title"] or self.about["study"]
         self.rows, self.names = read_rows(self.directory / "study.csv")
+        self.n_runs = self.about.get("runs", len(self.rows))  # that there will be
         self.lists = [entry["name"] for entry in self.about["lists"]]
         self.errors = [name[6:] for name in self.names if name.startswith("error_")]
 

@@ -57,8 +57,11 @@ namespace
         std::count(words.begin(), words.end(), "--restart") == 0 &&
         std::count(words.begin(), words.end(), "--continue") == 0)
       words.push_back("--restart");
-    if (const auto n = dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD);
-        n > 1)
+    // A study does without.
+    const auto n = dealii::Utilities::MPI::job_supports_mpi() ?
+                     dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) :
+                     1;
+    if (n > 1)
       words.insert(words.begin(), {"mpirun", "-np", std::to_string(n)});
     return quoted(words);
   }
@@ -221,11 +224,9 @@ main(int argc, char **argv)
     }
   catch (const Interruption &interruption)
     {
-      const bool has_begun =
-        dynamic_cast<const InterruptedFinerRun *>(&interruption) == nullptr;
       errors << "impm_dealii: stopped by signal " << interruption.signal << ' '
-             << interruption.what()
-             << "; to go on: " << command_to_go_on(argc, argv, has_begun)
+             << interruption.what() << "; to go on: "
+             << command_to_go_on(argc, argv, interruption.has_checkpoint)
              << std::endl;
       return 128 + interruption.signal;
     }

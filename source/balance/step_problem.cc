@@ -369,6 +369,25 @@ namespace impm
   }
 
   template <int dim>
+  double
+  StepProblem<dim>::loads_on_springs(const Vector &u) const
+  {
+    if (n_held_cells == 0 || is_damped || !(loads || following_loads))
+      return 0;
+    Vector of_loads, of_springs;
+    discretization->initialize(of_loads);
+    discretization->initialize(of_springs);
+    for (const Term *term :
+         those_that_are({loads.get(), following_loads.get()}))
+      term->add_force(u, of_loads);
+    of_loads.compress(VectorOperation::add);
+    discretization->condense_hanging(of_loads);
+    nodal_forces->add_force(u, of_springs);
+    const double all = of_loads.l1_norm();
+    return all > 0 ? of_springs.l1_norm() / all : 0.;
+  }
+
+  template <int dim>
   std::vector<const Term *>
   StepProblem<dim>::stabilization() const
   {

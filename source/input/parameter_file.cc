@@ -5,6 +5,7 @@
 #include <impm/input/parameter_file.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -65,6 +66,16 @@ namespace impm
       return names.empty() ? "none" : join(names, ", ");
     }
 
+    /** Whether a value is an integer, and too large for one. */
+    bool
+    is_beyond_integers(const std::string &value, const std::string &pattern)
+    {
+      return boost::starts_with(pattern, "[Integer") && value.size() > 9 &&
+             std::all_of(value.begin(), value.end(), [](const unsigned char c) {
+               return std::isdigit(c);
+             });
+    }
+
     bool
     is_switched_off(const std::string &path, const EntryValues &values)
     {
@@ -106,6 +117,12 @@ namespace impm
       {
         const auto path = join(line->path, "/");
         const auto next = line + 1;
+        if (!line->is_subsection && sections.count(path) > 0)
+          throw InputError("",
+                           line->place() + ": found entry '" + path +
+                             "', which is no entry but a subsection; allowed "
+                             "there are: " +
+                             names_within(path, paths_of(entries)));
         // An empty section that has no entries does no harm.
         if (line->is_subsection && prm->subsection_path_exists(line->path) &&
             (next == lines.end() || next->path.size() <= line->path.size()))
@@ -176,7 +193,10 @@ namespace impm
         throw InputError("",
                          line.place() + ": entry '" + name + "': found '" +
                            abridged(line.value) + "', allowed is " +
-                           in_words(pattern));
+                           in_words(pattern) +
+                           (is_beyond_integers(line.value, pattern) ?
+                              ", up to 2147483647" :
+                              ""));
       }
     for (unsigned int i = 0; i + 1 < line.path.size(); ++i)
       prm->leave_subsection();

@@ -405,6 +405,9 @@ namespace impm
   void
   History<dim>::write_line(const std::string &line)
   {
+    // What is written to a file that has been removed is gone.
+    if (std::error_code error; !std::filesystem::exists(file_name, error))
+      throw SystemError("'" + file_name + "' has been moved or removed");
     file << line << std::endl;
     if (!file)
       {

@@ -237,7 +237,8 @@ namespace impm
     if (path.empty())
       throw InputError("",
                        "no checkpoint to restart from in '" + directory +
-                         "': " + flaw);
+                         "': " + flaw +
+                         " (--continue begins where there is none)");
     if (!flaw.empty())
       console.message("warning: " + flaw + "; the one before it is taken");
 

@@ -102,7 +102,8 @@ namespace impm
   {
     const std::string name = last == "a" ? "b" : "a";
     std::error_code   error;
-    fs::create_directories(folder, error);
+    // No directory of the run: whoever has taken it away does not want it.
+    fs::create_directory(folder, error);
     if (error)
       throw SystemError("cannot make the directory '" + folder +
                         "': " + error.message());

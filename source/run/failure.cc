@@ -22,6 +22,7 @@ namespace impm
     step.residuals   = residuals;
     step.is_unstable = total.unstable + report.unstable > 0;
     step.are_plain   = scene.grid.method == GridMethod::mpm;
+    step.is_unheld   = problem->loads_on_springs(result.increment) >= 0.01;
     for (unsigned int p = 0; p < points.size(); ++p)
       {
         const double J  = determinant(deformation_gradient(points, p));

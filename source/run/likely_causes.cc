@@ -36,7 +36,11 @@ namespace impm
       (text << ... << parts);
       causes.push_back(text.str());
     };
-    if (step.is_unstable)
+    if (step.is_unheld)
+      add("a body that nothing holds in some direction, and that loads move "
+          "without inertia (section 'Boundary conditions', or another "
+          "'Time/Integrator')");
+    else if (step.is_unstable)
       add("a limit point: the run has met equilibria that are not stable, and "
           "may be beyond the load that can be borne");
     if (step.failed > 0)

@@ -19,6 +19,16 @@ namespace impm
 
   namespace
   {
+    /** Whether the points of every body split already. */
+    template <int dim>
+    bool
+    all_split(const Bodies<dim> &bodies)
+    {
+      return std::all_of(bodies.begin(), bodies.end(), [](const auto &body) {
+        return body.rigid || body.adaptation >= PointAdaptation::split;
+      });
+    }
+
     /** Of all points that carry a load at the start (m^2). Collective. */
     template <int dim>
     double
@@ -251,6 +261,24 @@ namespace impm
 
   template <int dim>
   void
+  Simulation<dim>::watch_springs()
+  {
+    const double share = problem->loads_on_springs(result.increment);
+    if (share < 0.01)
+      return;
+    std::ostringstream text;
+    text << std::setprecision(3)
+         << "nothing holds pieces of material in some direction, "
+         << problem->n_held_cells << " cells at t = " << time + report.dt << ' '
+         << scene.general.units.time << ", while " << 100 * share
+         << " % of the loads would move them: without inertia springs hold "
+            "them, and how far they go means nothing (let a face or a rigid "
+            "body hold the body, or choose another 'Time/Integrator')";
+    warn("loads on springs", text.str());
+  }
+
+  template <int dim>
+  void
   Simulation<dim>::watch_faces()
   {
     if (std::none_of(scene.faces.begin(),
@@ -392,8 +420,10 @@ namespace impm
         text << "some cell has less than one point for its volume or along an "
                 "axis ("
              << history.last_density().smallest
-             << "): forces there are those of single points; let points split, "
-                "or begin with more";
+             << "): forces there are those of single points; "
+             << (all_split(scene.bodies) ? "begin" :
+                                           "let points split, or begin")
+             << " with more";
         warn("few points", text.str());
       }
     if (history.last_drift() > 0.2)
@@ -406,6 +436,8 @@ namespace impm
              << (scene.grid.method == GridMethod::mpm ?
                    "points that cross cells need Grid/Method = GIMP, or a grid "
                    "that follows the body" :
+                 all_split(scene.bodies) ?
+                   "smaller steps may help" :
                    "smaller steps, or points that split, may help");
         warn("deformation drift", text.str());
       }
@@ -474,6 +506,10 @@ namespace impm
   Simulation<3>::watch_faces();
   template void
   Simulation<3>::watch_contact();
+  template void
+  Simulation<2>::watch_springs();
+  template void
+  Simulation<3>::watch_springs();
   template void
   Simulation<2>::watch_pieces();
   template void

@@ -389,6 +389,7 @@ namespace impm
     report.work_of_heat       = work.heat;
     report.heat_supplied      = total.heat_supplied;
     watch_contact();
+    watch_springs();
     history.take_figures(*problem, result.increment, end_forces);
     watch_faces();
     // While points are in the order of their footprints.

@@ -93,9 +93,10 @@ namespace impm
             }
           catch (const Interruption &interruption)
             {
-              throw InterruptedFinerRun(interruption.signal,
-                                        "in the finer run of " + reference +
-                                          ", which will start anew");
+              throw Interruption(interruption.signal,
+                                 "in the finer run of " + reference +
+                                   ", which will start anew",
+                                 false);
             }
           catch (const ComputationError &error)
             {

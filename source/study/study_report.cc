@@ -95,6 +95,7 @@ namespace impm
     StudyResult result;
     result.status         = json["status"].get<std::string>();
     result.ranks          = json.value("ranks", 1u);
+    result.revision       = json.value("revision", std::string());
     result.wall_seconds   = json.value("wall_seconds", 0.);
     const auto add_number = [](StudyResult::Numbers         &numbers,
                                const std::string            &name,

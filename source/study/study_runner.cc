@@ -1,6 +1,7 @@
 #include <impm/base/exceptions.h>
 #include <impm/base/files.h>
 #include <impm/base/names.h>
+#include <impm/run/signals.h>
 #include <impm/scene/scene.h>
 #include <impm/study/study_report.h>
 
@@ -9,8 +10,10 @@
 #include <boost/process/io.hpp>
 #include <nlohmann/json.hpp>
 #include <sys/prctl.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
@@ -73,11 +76,13 @@ namespace impm
     std::string
     describe(const std::string &name,
              const std::string &title,
-             const StudySpec   &spec)
+             const StudySpec   &spec,
+             const unsigned int n_runs)
     {
       nlohmann::ordered_json json;
       json["study"] = name;
       json["title"] = title;
+      json["runs"]  = n_runs;
       for (const auto &list : spec.lists)
         json["lists"].push_back({{"name", list.name},
                                  {"has_sizes", !list.sizes.empty()},
@@ -130,6 +135,20 @@ namespace impm
       return !message.empty() ? message : !first.empty() ? first : "no message";
     }
 
+    /** Waits for a process, to which a signal to the study is handed on. */
+    void
+    wait_for(boost::process::child &child, const bool is_mpirun)
+    {
+      bool is_told = false;
+      while (!child.wait_for(std::chrono::milliseconds(50)))
+        if (caught_signal() != 0 && !is_told)
+          {
+            // After others mpirun soon kills.
+            kill(child.id(), is_mpirun ? SIGUSR1 : caught_signal());
+            is_told = true;
+          }
+    }
+
     /**
      * Runs the program as a process of its own, or under mpirun, into a
      * directory, where log.txt has its command and what it said. Whatever
@@ -159,12 +178,14 @@ namespace impm
         words,
         (process::std_out & process::std_err) > append,
         process::std_in < process::null,
-        // It does not go on when the study is killed.
+        // It does not go on when the study is killed, and hears of what comes
+        // from the keyboard by the study alone.
         process::extend::on_exec_setup = [](auto &) {
           prctl(PR_SET_PDEATHSIG, SIGTERM);
+          setpgid(0, 0);
         });
       std::fclose(append);
-      child.wait();
+      wait_for(child, run.ranks > 1);
 
       auto      result = read_result(directory).value_or(StudyResult());
       const int state  = child.native_exit_code();
@@ -184,7 +205,8 @@ namespace impm
 
     /**
      * All repeats of a run; the first that failed stands for it, else the
-     * first, with the median of the wall times.
+     * first, with the median of the wall times. Not yet made where a signal
+     * comes between.
      */
     StudyResult
     run_repeats(const std::string &directory,
@@ -198,6 +220,8 @@ namespace impm
       std::vector<double> seconds;
       for (unsigned int k = 1; k <= repeat; ++k)
         {
+          if (caught_signal() != 0)
+            return {};
           const auto here =
             k == 1 ? directory : directory + "/repeat_" + std::to_string(k);
           const auto kept = kept_result(here, parameters, run.ranks);
@@ -258,7 +282,21 @@ namespace impm
       throw SystemError("cannot make the directory '" + directory +
                         "': " + error.message());
     const std::string title = prm.get({"General"}, "Title");
-    replace_file(directory + "/study.json", describe(name, title, spec));
+    replace_file(directory + "/study.json",
+                 describe(name, title, spec, runs.size()));
+    const auto write_table = [&]() {
+      replace_file(directory + "/study.csv", study_csv(spec, runs));
+    };
+    // What is there is not lost to a run that is made first.
+    for (unsigned int r = 0; r < runs.size(); ++r)
+      if (const auto kept = kept_result(directory + "/" + runs[r].name,
+                                        parameters[r],
+                                        runs[r].ranks))
+        runs[r].result = *kept;
+    write_table();
+    for (const std::string of_all : {"/study.txt", "/best.csv"})
+      std::filesystem::remove(directory + of_all, error);
+    catch_signals();
 
     const bool speaks = line.verbosity != CommandLine::Verbosity::quiet;
     if (speaks)
@@ -274,8 +312,19 @@ namespace impm
                                  parameters[r],
                                  spec.repeat,
                                  kept);
-        // Whoever stops the study here keeps what it has found.
-        replace_file(directory + "/study.csv", study_csv(spec, runs));
+        if (caught_signal() != 0)
+          {
+            if (!run.result.done())
+              run.result = StudyResult(); // not yet made
+            write_table();
+            throw Interruption(caught_signal(),
+                               "in run '" + run.name + "', " +
+                                 std::to_string(r + run.result.done()) +
+                                 " of " + std::to_string(runs.size()) +
+                                 " are done",
+                               false);
+          }
+        write_table();
         if (speaks)
           std::cout << "  " << r + 1 << '/' << runs.size() << ' ' << run.name
                     << ": " << (kept ? "kept, " : "") << run.result.status

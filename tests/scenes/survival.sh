@@ -253,6 +253,45 @@ case $what in
     run 3 --restart
     says "^impm_dealii: system failure: .*run/history.csv"
     ;;
+  gone) # the directory, while the run is on
+    "$program" "${scene[@]}" > "$output/said" 2>&1 &
+    pid=$!
+    wait_for_checkpoint
+    mv "$output/run" "$output/elsewhere"
+    wait "$pid"
+    code=$?
+    [ "$code" = 3 ] || fail "exit code $code"
+    says "^impm_dealii: system failure: .*run/.*"
+    [ ! -e "$output/run" ] || fail "makes it anew"
+    mv "$output/elsewhere" "$output/run"
+    run 0 --restart
+    ;;
+  study) # stopped by a signal, and gone on with
+    scene=("$scenes/upsetting.prm" --output "$output/run" --study
+      --set "Grid/Adaptation/Highest level=0" --set "Study/Lists=step"
+      --set "Study/step/Entries=Time/Time step"
+      --set "Study/step/Values=1e-3 | 2e-5 | 5e-4")
+    "$program" "${scene[@]}" > "$output/said" 2>&1 &
+    pid=$!
+    for ((i = 0; i < 400; ++i)); do
+      [ "$(wc -l < "$output/run/2e-5/history.csv" 2> /dev/null || echo 0)" -lt 3 ] || break
+      sleep 0.05
+    done
+    kill -TERM "$pid"
+    wait "$pid"
+    code=$?
+    [ "$code" = 143 ] || fail "exit code $code"
+    grep -Eq "^impm_dealii: stopped by signal 15 in run '2e-5', 1 of 3 are done; to go on: .*upsetting.prm .*--study" \
+      "$output/said" || fail "does not say how to go on"
+    grep -q '"status": "stopped by a signal"' "$output/run/2e-5/summary.json" ||
+      fail "the run is not told"
+    [ "$(wc -l < "$output/run/study.csv")" = 2 ] || fail "another table"
+    grep -q '"runs": 3' "$output/run/study.json" || fail "no number of runs"
+    "$program" "${scene[@]}" --set "Study/step/Values=1e-3 | 5e-4" \
+      > "$output/said" 2>&1 || fail "does not go on"
+    grep -q "1/2 1e-3: kept, done" "$output/said" || fail "keeps nothing"
+    [ "$(wc -l < "$output/run/study.csv")" = 3 ] || fail "lacks a run"
+    ;;
   full) # disk; needs the rights of root to make one
     mkdir "$output/run"
     mount -t tmpfs -o size=2m tmpfs "$output/run" 2> /dev/null ||

@@ -82,10 +82,23 @@ def runs():
     (options.output / "unfinished/summary.json").unlink()
     with open(options.output / "unfinished/history.csv", "a") as file:
         file.write("6,1e-")  # killed while it wrote
+    stopped = json.loads((options.output / "failed/summary.json").read_text())
+    shutil.copytree(options.output / "upsetting", options.output / "stopped")
+    (options.output / "stopped/summary.json").write_text(
+        json.dumps(stopped | {"status": "stopped by a signal", "warnings": []}))
     study = Path(__file__).parent.parent / "scenes/studies/block.prm"
     reference = ["Names=pull", "pull/Kind=probe", "pull/Of=pull", "pull/Value=-0.1054"]
     words = [word for entry in reference for word in ("--set", f"Reference/{entry}")]
     program(0, study, "--study", *words, "--output", options.output / "study")
+    # As it is found while it goes on, and before its first run has ended.
+    for name, n_rows in (("begun", 2), ("bare", 0)):
+        shutil.copytree(options.output / "study", options.output / name)
+        for file in ("study.txt", "best.csv"):
+            (options.output / name / file).unlink()
+        lines = (options.output / "study/study.csv").read_text().splitlines(True)
+        if n_rows == 0:
+            lines[0] = lines[0].partition("peak_memory_kilobytes")[0] + "peak_memory_kilobytes\n"
+        (options.output / name / "study.csv").write_text("".join(lines[:1 + n_rows]))
 
 
 def refusals():
@@ -213,7 +226,10 @@ def report():
         "solid": (["solid", "--field", FIELD], "upsetting, a quarter in 3D", "done", 4),
         "failed": (["failed"], "upsetting of a steel cylinder", "failed", 2),
         "unfinished": (["unfinished"], "upsetting of a steel cylinder", "unfinished", 4),
+        "stopped": (["stopped"], "upsetting of a steel cylinder", "unfinished", 4),
         "study": (["study"], "stretched block", "4 of 6 done", 4),
+        "begun": (["begun"], "stretched block", "2 of 6 done", 1),
+        "bare": (["bare"], "stretched block", "0 of 6 done", 0),
     }
     for name, (words, title, badge, n_figures) in pages.items():
         path = out / f"{name}.html"

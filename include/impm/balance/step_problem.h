@@ -124,6 +124,11 @@ namespace impm
     /** Part of the force of contact that the springs took last. */
     double spring_share = 0;
 
+    /** After a step has converged at `u`: what springs that hold pieces of
+     * material take, over all loads; 0 if there are none. Collective. */
+    double
+    loads_on_springs(const Vector &u) const;
+
     /** Those of the terms that are no physics: ghost penalty, springs of pieces
      * that nothing holds and of damping. */
     std::vector<const Term *>

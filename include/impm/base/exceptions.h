@@ -41,16 +41,20 @@ namespace impm
     const std::string entry;
   };
 
-  /** A signal has asked the run to stop, and it is saved: exit code 128 + the
-   * signal's number. Thrown on every rank alike. */
+  /** A signal has asked to stop, and what there is is saved: exit code 128 +
+   * the signal's number. Thrown on every rank alike. */
   struct Interruption : std::runtime_error
   {
-    Interruption(const int signal, const std::string &message)
+    Interruption(const int          signal,
+                 const std::string &message,
+                 const bool         has_checkpoint = true)
       : std::runtime_error(message)
       , signal(signal)
+      , has_checkpoint(has_checkpoint)
     {}
 
-    const int signal;
+    const int  signal;
+    const bool has_checkpoint; ///< else what goes on does so by itself
   };
 
   /** A linear solve has nothing to go on with: Newton's method gives up. */

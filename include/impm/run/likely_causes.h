@@ -21,6 +21,7 @@ namespace impm
     double       smallest_J = 1, largest_J = 1; ///< of a point
     bool         bodies_touch = false;          ///< share a node, or nearly do
     unsigned int failed       = 0;              ///< points, see FailingLaw
+    bool         is_unheld = false; ///< loads act on pieces that nothing holds
   };
 
   /** What it may have failed for, for people: the likely ones, in their order,

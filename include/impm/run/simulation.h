@@ -202,6 +202,11 @@ namespace impm
     void
     watch_contact();
 
+    /** Warns of loads on pieces of material that nothing holds, without
+     * inertia. Collective. */
+    void
+    watch_springs();
+
     /** What is due once a row of the history. Collective. */
     void
     write_row();

@@ -2,7 +2,6 @@
 #define impm_study_finer_run_h
 
 #include <impm/app/command_line.h>
-#include <impm/base/exceptions.h>
 #include <impm/base/files.h>
 #include <impm/input/sections/reference.h>
 
@@ -19,12 +18,6 @@ namespace impm
 
   /** By the name of the reference that asks for it. */
   using FinerRuns = std::map<std::string, FinerRun>;
-
-  /** A signal has come before the run itself has begun. */
-  struct InterruptedFinerRun : Interruption
-  {
-    using Interruption::Interruption;
-  };
 
   /**
    * The finer runs that the references of a scene ask for, on the first rank:

@@ -6,6 +6,7 @@
 #include <boost/algorithm/string/predicate.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 
 namespace impm
@@ -191,12 +192,13 @@ namespace impm
     }
 
     /**
-     * Whether a face is to move along its normal: looks at some instants of
-     * the run, on a coarse lattice of the face.
+     * Whether a face is to move along its normal by more than half a cell, as
+     * small as one may get: looks at some instants of the run, on a coarse
+     * lattice of the face.
      */
     template <int dim>
     bool
-    moves_along_normal(const Section       &section,
+    moves_out_of_cells(const Section       &section,
                        const FaceSpec<dim> &face,
                        const GridSpec<dim> &grid,
                        const unsigned int   number)
@@ -206,6 +208,10 @@ namespace impm
         return false;
       const double end = dealii::Utilities::string_to_double(
         section.chosen("Time/End time", ""));
+      const double cell =
+        (grid.upper_corner[normal] - grid.lower_corner[normal]) /
+        std::ldexp(grid.cells[normal],
+                   std::max(grid.refinement_levels, grid.finest_level));
       const ExpressionTrial trial; // where material need not be
       const unsigned int component = face.value->n_components == 1 ? 0 : normal;
       const unsigned int n_times   = 16;
@@ -214,12 +220,16 @@ namespace impm
       for (const auto &place : places_on_face<dim>(grid, number, n_steps))
         {
           face.value->set_time(0);
-          const double start =
-            face.is_velocity ? 0. : face.value->value(place, component);
+          const double start = face.value->value(place, component);
+          double       way = 0, last = start;
           for (unsigned int i = 1; i <= n_times; ++i)
             {
               face.value->set_time(end * i / n_times);
-              if (face.value->value(place, component) != start)
+              const double now = face.value->value(place, component);
+              way  = face.is_velocity ? way + (last + now) / 2 * end / n_times :
+                                        now - start;
+              last = now;
+              if (std::abs(way) > 0.5 * cell)
                 return true;
             }
         }
@@ -259,7 +269,7 @@ namespace impm
                           "is one");
         moves_grid = moves_grid || faces[f].moves_grid;
         if (!grid.is_lagrangian() && !faces[f].moves_grid &&
-            moves_along_normal(subsection, faces[f], grid, f))
+            moves_out_of_cells(subsection, faces[f], grid, f))
           warnings.push_back(
             "face '" + subsection.name +
             "' is to move, but not the grid with it: the face holds the nodes "

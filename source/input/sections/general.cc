@@ -63,8 +63,16 @@ namespace impm
         const auto parts = dealii::Utilities::split_string_list(pair, '=');
         if (parts.size() == 2 && Patterns::Double().match(parts[1]) &&
             !is_too_small(parts[1]))
-          general.constants[parts[0]] =
-            dealii::Utilities::string_to_double(parts[1]);
+          {
+            if (!general.constants
+                   .emplace(parts[0],
+                            dealii::Utilities::string_to_double(parts[1]))
+                   .second)
+              section.fail("Constants",
+                           "found '" + parts[0] + "' a second time" +
+                             (parts[0] == "pi" ? ", which it is anyway" : "") +
+                             ", allowed is each name once");
+          }
         else
           section.fail("Constants",
                        "found '" + pair + "', allowed is 'name = number'");

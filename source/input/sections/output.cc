@@ -255,6 +255,13 @@ namespace impm
         carriers.push_back(body);
       for (const auto &grip : grips)
         carriers.push_back(grip.name);
+      for (const auto &face : faces)
+        if (face.name == reaction.on &&
+            std::count(carriers.begin(), carriers.end(), face.name) == 0)
+          section.fail("On",
+                       "found '" + reaction.on +
+                         "', a free face, which bears nothing; allowed are: " +
+                         (carriers.empty() ? "none" : join(carriers, ", ")));
       section.require_name("On", reaction.on, carriers);
       section.add("Kind",
                   reaction.is_moment,

@@ -6,6 +6,7 @@
 #include <impm/input/sections/reference.h>
 #include <impm/points/point_fields.h>
 
+#include <cmath>
 #include <sstream>
 
 namespace impm
@@ -100,10 +101,21 @@ namespace impm
       try
         {
           const auto table = read_csv_table(file);
-          if (table.has(against) && table.has(column))
-            return {table[against], table[column]};
-          if (table.names.size() == 2)
-            return {table.columns[0], table.columns[1]};
+          const bool named = table.has(against) && table.has(column);
+          if (named || table.names.size() == 2)
+            {
+              Curve curve;
+              curve.x = named ? table[against] : table.columns[0];
+              curve.y = named ? table[column] : table.columns[1];
+              for (unsigned int i = 0; i < curve.x.size(); ++i)
+                if (!std::isfinite(curve.x[i]) || !std::isfinite(curve.y[i]))
+                  throw InputError("",
+                                   file + ", line " +
+                                     std::to_string(table.lines[i]) +
+                                     ": found a value that is not finite, "
+                                     "allowed on a curve are numbers");
+              return curve;
+            }
         }
       catch (const InputError &error)
         {
@@ -155,12 +167,14 @@ namespace impm
           read_file(prm.get("File"), spec.against, spec.columns.front()) :
           read_points(prm.get("Points"));
       const auto curve = make_curve(points.x, points.y);
-      if (!curve || curve->x.empty())
+      if (!curve || curve->x.size() < 2)
         throw InputError(from_file ? "File" : "Points",
                          std::string("found ") +
-                           (curve ? "no points" :
-                                    "an abscissa that rises and falls") +
-                           ", allowed is a curve along its abscissa");
+                           (!curve ? "an abscissa that rises and falls" :
+                            curve->x.empty() ? "no points" :
+                                               "one point") +
+                           ", allowed is a curve of two points or more along "
+                           "its abscissa");
       spec.curve = *curve;
     }
 

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "scene_fixture.h"
 
 using namespace dealii;

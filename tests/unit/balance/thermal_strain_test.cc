@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "law_scene.h"
 #include "material_fixture.h"
 

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "run_scene.h"
 #include "scene_fixture.h"
 

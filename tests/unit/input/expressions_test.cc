@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "expect_blame.h"
 #include "run_scene.h"
 #include "scene_fixture.h"

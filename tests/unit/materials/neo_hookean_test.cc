@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <random>
 
 #include "material_fixture.h"
 #include "scene_fixture.h"

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "law_fixture.h"
 #include "material_fixture.h"
 #include "scene_fixture.h"

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #ifdef DEAL_II_WITH_HDF5
 
 #  include <deal.II/base/hdf5.h>

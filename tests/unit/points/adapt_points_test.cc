@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "scene_fixture.h"
 
 using namespace dealii;

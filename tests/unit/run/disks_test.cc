@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "run_file.h"
+#include "run_scene.h"
 
 using namespace impm;
 

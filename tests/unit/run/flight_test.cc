@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "run_file.h"
+#include "run_scene.h"
 
 using namespace impm;
 

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "run_file.h"
+#include "run_scene.h"
 #include "scene_fixture.h"
 
 using namespace impm;

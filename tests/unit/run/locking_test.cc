@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "run_file.h"
+#include "run_scene.h"
 
 using namespace impm;
 

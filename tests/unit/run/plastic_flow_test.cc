@@ -1,8 +1,11 @@
+#include <impm/study/study.h>
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 
-#include "run_file.h"
+#include "run_scene.h"
 
 using namespace impm;
 

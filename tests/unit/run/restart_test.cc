@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include <csignal>
+#include <filesystem>
+#include <fstream>
 
 #include "run_scene.h"
 #include "scene_fixture.h"

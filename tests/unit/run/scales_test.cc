@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "run_file.h"
+#include "run_scene.h"
 #include "scene_fixture.h"
 
 using namespace impm;

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "run_file.h"
+#include "run_scene.h"
 
 using namespace impm;
 

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 
-#include "run_file.h"
+#include "run_scene.h"
+
+using namespace impm;
 
 // Behind a disc that is drawn through a block the grid coarsens and points
 // merge: there are about as many as before. Without merging there are 21,050 at

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include "scene_fixture.h"
 
 using namespace dealii;

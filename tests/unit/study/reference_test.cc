@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <filesystem>
+#include <fstream>
 
 #include "expect_blame.h"
 #include "scene_fixture.h"
@@ -461,13 +462,23 @@ TEST(Reference, WhatCannotBe)
                "Reference/a/File",
                {"nowhere.csv"});
   const TemporaryFile wrong("time,bottom,x\n0,0,0\n", ".csv"),
-    broken("time,top\n0,a\n", ".csv");
+    broken("time,top\n0,a\n", ".csv"),
+    no_number("time,top\n0,1\n\n1,nan\n", ".csv"), header("time,top\n", ".csv");
   expect_blame(references("curve", {{"Column=top", "File=" + wrong.name}}),
                "Reference/a/File",
                {"'top'"});
   expect_blame(references("curve", {{"Column=top", "File=" + broken.name}}),
                "Reference/a/File",
                {"line 2", "'a'"});
+  expect_blame(references("curve", {{"Column=top", "File=" + no_number.name}}),
+               "Reference/a/File",
+               {"line 4", "not finite"});
+  expect_blame(references("curve", {{"Column=top", "File=" + header.name}}),
+               "Reference/a/File",
+               {"no points", "two points"});
+  expect_blame(references("curve", {{"Column=top", "Points=0 0"}}),
+               "Reference/a/Points",
+               {"one point", "two points"});
   expect_blame(references("finer run", {{"Columns=load", "Overrides=a/b=1"}}),
                "Reference/a/Columns",
                {"'load'"});

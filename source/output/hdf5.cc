@@ -25,7 +25,7 @@ namespace impm
     using Tree = boost::property_tree::ptree;
 
     std::string
-    written(const Tree &tree)
+    xdmf_text(const Tree &tree)
     {
       const boost::property_tree::xml_writer_settings<std::string> settings(' ',
                                                                             2);
@@ -253,7 +253,7 @@ namespace impm
       add(field, "Cell", picture.n_cells());
     file.close();
 #endif
-    const auto xml = written(document);
+    const auto xml = xdmf_text(document);
     return xml.substr(xml.find('\n') + 1); // without the declaration
   }
 

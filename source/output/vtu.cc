@@ -203,7 +203,7 @@ namespace impm
     }
 
     std::string
-    written(const Tree &file)
+    vtk_text(const Tree &file)
     {
       Tree document;
       document.add_child("VTKFile", file);
@@ -275,7 +275,7 @@ namespace impm
       pieces.push_back(base + (n == 1 ? "" : "." + std::to_string(r)) + ".vtu");
     const auto    path = directory + "/" + pieces[rank];
     std::ofstream file(path);
-    file << written(piece(picture, n > 1));
+    file << vtk_text(piece(picture, n > 1));
     file.close();
     if (!file)
       throw SystemError("cannot write '" + path + "' (disk full?)");
@@ -283,7 +283,7 @@ namespace impm
       return pieces[0];
     if (rank == 0)
       replace_file(directory + "/" + base + ".pvtu",
-                   written(record_of(picture, pieces)));
+                   vtk_text(record_of(picture, pieces)));
     return base + ".pvtu";
   }
 } // namespace impm

@@ -13,7 +13,7 @@ namespace impm
   {
     /** Zeroth to second moment of a part of the unit box, about its origin. */
     template <int dim>
-    struct Moments
+    struct BoxMoments
     {
       double         measure = 0;
       Tensor<1, dim> first, second;
@@ -37,7 +37,7 @@ namespace impm
              Point<dim>         place,
              const unsigned int axis,
              const unsigned int n,
-             Moments<dim>      &moments)
+             BoxMoments<dim>   &moments)
     {
       const double width     = std::pow(1. / n, dim - 1);
       const auto   inside_at = [&](const double along) {
@@ -109,7 +109,7 @@ namespace impm
       if (std::abs(offset[d]) > std::abs(offset[axis]))
         axis = d;
 
-    Moments<dim> moments;
+    BoxMoments<dim> moments;
     for (unsigned int i = 0; i < n_places / n; ++i)
       {
         const auto across = lattice_place<dim - 1>(i, n);

@@ -37,14 +37,14 @@ namespace impm
     }
 
     /** What either format yields, before it is checked. */
-    struct Content
+    struct PointTable
     {
       std::vector<double>       coordinates; ///< x, y, z of a point together
       std::vector<double>       volumes;
       std::vector<unsigned int> lines; ///< of the points in a CSV file
     };
 
-    Content
+    PointTable
     read_csv(const std::string &file_name, const unsigned int dim)
     {
       const auto  table  = read_csv_table(file_name, {"x", "y", "z", "volume"});
@@ -54,7 +54,7 @@ namespace impm
         if (std::count(names.begin(), names.end(), name) > 1)
           throw flaw(header, "the column '" + name + "' twice", "is once");
 
-      Content content;
+      PointTable content;
       content.lines = table.lines;
       content.coordinates.resize(3 * table.lines.size());
       for (unsigned int d = 0; d < 3; ++d)
@@ -265,7 +265,7 @@ namespace impm
         }
     }
 
-    Content
+    PointTable
     read_vtu(const std::string &file_name)
     {
       check_depth(file_name);
@@ -289,7 +289,7 @@ namespace impm
       const Tree       &file = tree.get_child("VTKFile");
       const Tree        none;
       const std::string of_volumes = file_name + ", point array 'volume'";
-      Content           content;
+      PointTable        content;
       for (const auto &[tag, piece] : *grid)
         {
           const auto n = piece.get("<xmlattr>.NumberOfPoints", 0u);
@@ -319,7 +319,7 @@ namespace impm
     /** Takes what makes sense, in either format. */
     template <int dim>
     PointCloud<dim>
-    check(const Content &content, const std::string &file_name)
+    check(const PointTable &content, const std::string &file_name)
     {
       // ParaView counts the points from 0, too.
       const auto name_of = [&](const std::size_t i) {

@@ -9,7 +9,7 @@ namespace impm
   {
     /** Sums of volume, first and second moments. */
     template <int dim>
-    struct Moments
+    struct BodyMoments
     {
       /** Of a box, or of what has its second moments, times a share. */
       void
@@ -45,7 +45,7 @@ namespace impm
             const BoundingBox<dim> &box,
             const bool              is_axisymmetric,
             const unsigned int      depth,
-            Moments<dim>           &moments)
+            BodyMoments<dim>       &moments)
     {
       // The distance of implicit functions is worth something near the surface.
       const unsigned int first = 3, last = dim == 2 ? 8 : 5;
@@ -92,7 +92,7 @@ namespace impm
                    const double      density,
                    const bool        is_axisymmetric)
   {
-    Moments<dim> moments;
+    BodyMoments<dim> moments;
     add_box(shape, *shape.bounding_box, is_axisymmetric, 0, moments);
     RigidInertia<dim> inertia;
     inertia.mass   = density * moments.volume;

@@ -14,7 +14,7 @@ namespace impm
   {
     /** How far outside of the surface a point still counts as on it, relative
      * to its size: round-off must not decide. */
-    constexpr double tolerance = 1e-12;
+    constexpr double surface_tolerance = 1e-12;
 
     /** The angle of a facet at a corner; in the plane, where a segment has
      * none, all weigh the same. */
@@ -212,13 +212,13 @@ namespace impm
   SurfaceMesh<dim>::contains(const Point<dim> &place) const
   {
     for (unsigned int d = 0; d < dim; ++d)
-      if (!(place[d] >= box.lower_bound(d) - tolerance * size &&
-            place[d] <= box.upper_bound(d) + tolerance * size))
+      if (!(place[d] >= box.lower_bound(d) - surface_tolerance * size &&
+            place[d] <= box.upper_bound(d) + surface_tolerance * size))
         return false;
     using Side = typename SideMap<dim>::Side;
     if (const auto side = side_map.side_of(place); side != Side::unknown)
       return side == Side::inside;
-    return distance_to(find_nearest(place), place) <= tolerance * size;
+    return distance_to(find_nearest(place), place) <= surface_tolerance * size;
   }
 
   template <int dim>

@@ -7,7 +7,7 @@ namespace impm
 {
   namespace
   {
-    enum class Kind
+    enum class FailureKind
     {
       none,
       plastic_strain,
@@ -18,11 +18,12 @@ namespace impm
   std::optional<FailureSpec>
   add_failure(const Section &section, const bool has_temperature)
   {
-    const Choice<Kind> kinds("Failure",
-                             {{"none", Kind::none},
-                              {"plastic strain", Kind::plastic_strain},
-                              {"Johnson-Cook", Kind::johnson_cook}});
-    Kind               kind;
+    const Choice<FailureKind> kinds(
+      "Failure",
+      {{"none", FailureKind::none},
+       {"plastic strain", FailureKind::plastic_strain},
+       {"Johnson-Cook", FailureKind::johnson_cook}});
+    FailureKind kind;
     section.add(kinds,
                 kind,
                 "Whether points lose their stress: not, at an equivalent "
@@ -30,12 +31,12 @@ namespace impm
                 "and temperature.");
     FailureSpec failure{};
     auto       &strain = failure.strain;
-    if (section.chooses(kinds, Kind::plastic_strain))
+    if (section.chooses(kinds, FailureKind::plastic_strain))
       section.add("Failure strain",
                   strain.d1,
                   {"1", FailureStrain::smallest},
                   "Equivalent plastic strain at which a point fails.");
-    if (section.chooses(kinds, Kind::johnson_cook))
+    if (section.chooses(kinds, FailureKind::johnson_cook))
       {
         const auto d =
           section.numbers("Failure constants",
@@ -43,12 +44,12 @@ namespace impm
                           "D1 to D5 of (D1 + D2 exp(D3 triaxiality)) (1 + D4 "
                           "ln(rate / reference rate)) (1 + D5 T*).",
                           "0.54, 4.89, -3.03, 0.014, 1.12");
-        if (kind == Kind::johnson_cook)
+        if (kind == FailureKind::johnson_cook)
           std::tie(strain.d1, strain.d2, strain.d3, strain.d4, strain.d5) =
             std::tie(d[0], d[1], d[2], d[3], d[4]);
         // Powers beyond all numbers would let nothing fail, without a word.
         const double slow = strain.d1 + strain.d2 * std::exp(strain.d3 / 3);
-        if (kind == Kind::johnson_cook &&
+        if (kind == FailureKind::johnson_cook &&
             !(slow >= FailureStrain::smallest && std::isfinite(slow)))
           section.refuse(
             "Failure constants",
@@ -78,7 +79,7 @@ namespace impm
                              "allowed is more than 'Reference temperature'");
           }
       }
-    if (kinds.is(section.chosen, section.path, Kind::none))
+    if (kinds.is(section.chosen, section.path, FailureKind::none))
       return {};
     section.add("Remaining stress",
                 failure.remaining_share,

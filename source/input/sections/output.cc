@@ -93,7 +93,7 @@ namespace impm
                     "principal stresses.");
     }
 
-    using Kind = ProbeSpec::Kind;
+    using ProbeKind = ProbeSpec::Kind;
 
     /** Over which points of which bodies. */
     template <int dim>
@@ -194,29 +194,29 @@ namespace impm
       section.add(
         "Kind",
         probe.kind,
-        {{"point", Kind::point},
-         {"largest", Kind::largest},
-         {"smallest", Kind::smallest},
-         {"spread", Kind::spread},
-         {"mean", Kind::mean},
-         {"extent", Kind::extent},
-         {"lower extent", Kind::lower_extent},
-         {"motion", Kind::motion}},
+        {{"point", ProbeKind::point},
+         {"largest", ProbeKind::largest},
+         {"smallest", ProbeKind::smallest},
+         {"spread", ProbeKind::spread},
+         {"mean", ProbeKind::mean},
+         {"extent", ProbeKind::extent},
+         {"lower extent", ProbeKind::lower_extent},
+         {"motion", ProbeKind::motion}},
         "point: at the point nearest to a place at the start, from which a "
         "displacement is carried on to the place by F. Largest, smallest, "
         "spread (their difference), mean: over bodies. Extent: largest "
         "coordinate, the points' domains included, and lower extent the "
         "smallest. Motion: of a moving face or a rigid body.");
-      if (probe.kind == Kind::point)
+      if (probe.kind == ProbeKind::point)
         probe.position =
           section.numbers("Position", dim, "Place at the start (m).");
-      else if (probe.kind == Kind::motion)
+      else if (probe.kind == ProbeKind::motion)
         add_mover(section, probe, faces, bodies);
       else
         add_region(section, probe, bodies);
-      const bool has_field = probe.kind != Kind::motion &&
-                             probe.kind != Kind::extent &&
-                             probe.kind != Kind::lower_extent;
+      const bool has_field = probe.kind != ProbeKind::motion &&
+                             probe.kind != ProbeKind::extent &&
+                             probe.kind != ProbeKind::lower_extent;
       if (has_field)
         {
           section.add("Field",

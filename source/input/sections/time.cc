@@ -7,11 +7,11 @@ namespace impm
     const Choice<Integrator>
       integrators("Integrator",
                   {{"quasi-static", Integrator::quasi_static},
-                   {"explicit", Integrator::explicit_euler},
                    {"theta", Integrator::theta},
                    {"Newmark", Integrator::newmark},
                    {"generalised alpha", Integrator::generalised_alpha},
-                   {"energy-momentum", Integrator::energy_momentum}});
+                   {"energy-momentum", Integrator::energy_momentum},
+                   {"explicit", Integrator::explicit_euler}});
 
     void
     add_integrator(const Section &section,
@@ -20,8 +20,8 @@ namespace impm
     {
       section.add(integrators,
                   time.integrator,
-                  "Quasi-static: no inertia. Explicit and theta: Sulsky & Kaul "
-                  "(2004), section 2.3.1 and eq. 2.4.1. Newmark: Guilkey & "
+                  "Quasi-static: no inertia. Theta and explicit: Sulsky & Kaul "
+                  "(2004), eq. 2.4.1 and section 2.3.1. Newmark: Guilkey & "
                   "Weiss (2003). Generalised alpha: Chung & Hulbert (1993), "
                   "damps what steps do not resolve. Energy-momentum: Simo & "
                   "Tarnow (1992), for bodies that turn; its matrix is "

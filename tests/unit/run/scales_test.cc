@@ -220,7 +220,7 @@ TEST(Scales, SliversOfCellsDoNotMatterOnAnAdaptedGrid)
 }
 
 
-TEST(Scales, SliversOfCellsDoNotMatterInSpace)
+TEST(ScalesNightly, SliversOfCellsDoNotMatterInSpace)
 {
   expect_no_sign_of_cuts<3>(
     1. / 12,
@@ -269,7 +269,7 @@ TEST(ScalesMpi, StiffnessMayDifferByAnyFactor)
 }
 
 
-TEST(Scales, UnitsDoNotMatter)
+TEST(ScalesNightly, UnitsDoNotMatter)
 {
   const auto reference = Frame{}.press("GIMP");
   const auto with_amg  = Frame{}.press("GIMP", "AMG");

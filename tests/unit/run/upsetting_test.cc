@@ -145,7 +145,7 @@ TEST(Upsetting, QuarterInThreeDimensions)
   compare_with_finite_elements(columns, "largest_radius", 0.01);
 }
 
-TEST(Upsetting, LongStepsDoNotCarryPointsThroughThePlaten)
+TEST(UpsettingNightly, LongStepsDoNotCarryPointsThroughThePlaten)
 {
   const auto columns = run_file("upsetting", {"Time/Time step=1e-3"});
   EXPECT_GT(columns.at("points").back(), 600.);
@@ -155,7 +155,7 @@ TEST(Upsetting, LongStepsDoNotCarryPointsThroughThePlaten)
 // Steps of 1 to 1e5 times what a wave takes through the smallest cell, the
 // shortest ones for a while. Nodes that land make a stair of the load, of 5 %
 // on cells of 1 mm.
-TEST(Upsetting, StepsOfAnyLengthAgreeWithFiniteElements)
+TEST(UpsettingNightly, StepsOfAnyLengthAgreeWithFiniteElements)
 {
   const auto check = [](const std::string              &cfl,
                         const std::vector<std::string> &overrides,

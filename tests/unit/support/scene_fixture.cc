@@ -143,6 +143,9 @@ namespace impm
   {}
 
   template <int dim>
+  Model<dim>::~Model() = default;
+
+  template <int dim>
   Vector
   Model<dim>::vector() const
   {

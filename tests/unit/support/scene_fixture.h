@@ -77,6 +77,8 @@ namespace impm
                    const Overrides   &overrides    = {},
                    const MPI_Comm     communicator = MPI_COMM_WORLD);
 
+    ~Model();
+
     Vector
     vector() const;
 

@@ -253,18 +253,21 @@ case $what in
     run 3 --restart
     says "^impm_dealii: system failure: .*run/history.csv"
     ;;
-  gone) # the directory, while the run is on
-    "$program" "${scene[@]}" > "$output/said" 2>&1 &
+  gone) # the directory, while the run is on; p4est ends a program that it
+    # finds without one while it saves a grid
+    "$program" "${scene[@]}" --set "Output/Checkpoints/Interval in steps=0" \
+      > "$output/said" 2>&1 &
     pid=$!
-    wait_for_checkpoint
+    for ((i = 0; i < 200; ++i)); do
+      [ "$(wc -l < "$output/run/history.csv" 2> /dev/null || echo 0)" -lt 3 ] || break
+      sleep 0.05
+    done
     mv "$output/run" "$output/elsewhere"
     wait "$pid"
     code=$?
     [ "$code" = 3 ] || fail "exit code $code"
     says "^impm_dealii: system failure: .*run/.*"
     [ ! -e "$output/run" ] || fail "makes it anew"
-    mv "$output/elsewhere" "$output/run"
-    run 0 --restart
     ;;
   study) # stopped by a signal, and gone on with
     scene=("$scenes/upsetting.prm" --output "$output/run" --study

@@ -319,15 +319,18 @@ namespace impm
     Vector stiffness;
     if (isolated_stiffness > 0)
       {
-        IsolatedCells<dim> isolated(points,
-                                    footprints,
-                                    populated,
-                                    *discretization,
-                                    constraints,
-                                    isolated_stiffness);
-        n_held_cells = isolated.n;
+        auto cells   = std::make_unique<IsolatedCells<dim>>(points,
+                                                          footprints,
+                                                          populated,
+                                                          *discretization,
+                                                          constraints,
+                                                          isolated_stiffness);
+        n_held_cells = cells->n;
         if (n_held_cells > 0)
-          stiffness = std::move(isolated.stiffness);
+          {
+            stiffness = std::move(cells->stiffness);
+            isolated  = std::move(cells);
+          }
       }
     if (damping.factor > 0)
       {
@@ -372,7 +375,7 @@ namespace impm
   double
   StepProblem<dim>::loads_on_springs(const Vector &u) const
   {
-    if (n_held_cells == 0 || is_damped || !(loads || following_loads))
+    if (!isolated || is_damped || !(loads || following_loads))
       return 0;
     Vector of_loads, of_springs;
     discretization->initialize(of_loads);
@@ -384,7 +387,7 @@ namespace impm
     discretization->condense_hanging(of_loads);
     nodal_forces->add_force(u, of_springs);
     const double all = of_loads.l1_norm();
-    return all > 0 ? of_springs.l1_norm() / all : 0.;
+    return all > 0 ? isolated->resultants(of_springs) / all : 0.;
   }
 
   template <int dim>

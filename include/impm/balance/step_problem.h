@@ -38,6 +38,9 @@ namespace impm
   class FreeBodies;
 
   template <int dim>
+  class IsolatedCells;
+
+  template <int dim>
   class SurfacePoints;
 
   /**
@@ -124,8 +127,8 @@ namespace impm
     /** Part of the force of contact that the springs took last. */
     double spring_share = 0;
 
-    /** After a step has converged at `u`: what springs that hold pieces of
-     * material take, over all loads; 0 if there are none. Collective. */
+    /** After a step has converged at `u`: the resultants of springs that hold
+     * pieces of material, over all loads; 0 if there are none. Collective. */
     double
     loads_on_springs(const Vector &u) const;
 
@@ -176,6 +179,7 @@ namespace impm
     /** What the integrator takes for the acceleration at the start: gathered,
      * or from the forces then (m/s^2). */
     const Vector                                        start_acceleration;
+    std::unique_ptr<const IsolatedCells<dim>>           isolated; ///< or null
     unsigned int                                        n_held_cells = 0;
     const bool                                          is_damped;
     const std::unique_ptr<NodalForces>                  nodal_forces;

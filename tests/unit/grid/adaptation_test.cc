@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
-
 #include "run_scene.h"
 #include "scene_fixture.h"
 
@@ -255,23 +253,12 @@ TEST(AdaptationMpi, RunGoesOnOnOtherGrids)
     Utilities::MPI::broadcast(MPI_COMM_WORLD, static_cast<int>(getpid()));
   const std::string directory =
     testing::TempDir() + "impm_adaptation_" + std::to_string(id);
-  const auto go = [&](std::unique_ptr<GridPolicy<2>> policy) {
-    Simulation<2> simulation(scene,
-                             CommandLine::Verbosity::quiet,
-                             MPI_COMM_WORLD,
-                             std::move(policy));
-    simulation.run(directory, "test", "");
-    MPI_Barrier(MPI_COMM_WORLD);
-    const auto columns = read_history(directory);
-    MPI_Barrier(MPI_COMM_WORLD);
-    std::error_code ignored;
-    std::filesystem::remove_all(directory, ignored);
-    MPI_Barrier(MPI_COMM_WORLD);
-    return columns;
-  };
-  const auto fixed = go(nullptr);
+  const auto fixed = run(scene, MPI_COMM_WORLD, directory);
   const auto adapted =
-    go(std::make_unique<SplitWhere<2>>(scene.faces, sweep<2>));
+    run<2>(scene,
+           MPI_COMM_WORLD,
+           directory,
+           std::make_unique<SplitWhere<2>>(scene.faces, sweep<2>));
   ASSERT_EQ(adapted.at("step").size(), 5u);
   EXPECT_NE(adapted.at("active_cells").back(), fixed.at("active_cells").back());
   EXPECT_NE(adapted.at("active_cells").front(),

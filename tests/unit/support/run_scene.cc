@@ -61,13 +61,15 @@ namespace impm
 
   template <int dim>
   Columns
-  run(const Scene<dim>  &scene,
-      const MPI_Comm     communicator,
-      const std::string &directory)
+  run(const Scene<dim>                &scene,
+      const MPI_Comm                   communicator,
+      const std::string               &directory,
+      std::unique_ptr<GridPolicy<dim>> policy)
   {
     Simulation<dim> simulation(scene,
                                CommandLine::Verbosity::quiet,
-                               communicator);
+                               communicator,
+                               std::move(policy));
     simulation.run(directory, "test", "");
     MPI_Barrier(MPI_COMM_WORLD);
     const auto columns = read_history(directory);
@@ -95,9 +97,15 @@ namespace impm
   }
 
   template Columns
-  run(const Scene<2> &, const MPI_Comm, const std::string &);
+  run(const Scene<2> &,
+      const MPI_Comm,
+      const std::string &,
+      std::unique_ptr<GridPolicy<2>>);
   template Columns
-  run(const Scene<3> &, const MPI_Comm, const std::string &);
+  run(const Scene<3> &,
+      const MPI_Comm,
+      const std::string &,
+      std::unique_ptr<GridPolicy<3>>);
   template Columns
   run_file<2>(const std::string &, const std::vector<std::string> &);
   template Columns

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <memory>
 #include <set>
 #include <string>
 #include <vector>
@@ -25,12 +26,14 @@ namespace impm
               const Columns               &other,
               const std::set<std::string> &left_out = {});
 
-  /** Runs a scene into a directory, which goes with the call. Collective. */
+  /** Runs a scene into a directory, which goes with the call; by its own policy
+   * unless another one is given. Collective. */
   template <int dim>
   Columns
-  run(const Scene<dim>  &scene,
-      const MPI_Comm     communicator,
-      const std::string &directory);
+  run(const Scene<dim>                &scene,
+      const MPI_Comm                   communicator,
+      const std::string               &directory,
+      std::unique_ptr<GridPolicy<dim>> policy = nullptr);
 
   /** Runs a scene of prm/ on all ranks, without pictures. Collective. */
   template <int dim = 2>

@@ -317,11 +317,14 @@ namespace impm
             if (!run.result.done())
               run.result = StudyResult(); // not yet made
             write_table();
+            const auto n_done =
+              std::count_if(runs.begin(), runs.end(), [](const auto &one) {
+                return one.result.done();
+              });
             throw Interruption(caught_signal(),
                                "in run '" + run.name + "', " +
-                                 std::to_string(r + run.result.done()) +
-                                 " of " + std::to_string(runs.size()) +
-                                 " are done",
+                                 std::to_string(n_done) + " of " +
+                                 std::to_string(runs.size()) + " are done",
                                false);
           }
         write_table();
